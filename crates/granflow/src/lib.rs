@@ -1,1 +1,13 @@
-//! x
+//! granflow says where a granular mass comes to rest.
+
+pub mod backend;
+pub mod boundary;
+pub mod field;
+pub mod grid;
+pub mod limiter;
+pub mod observe;
+pub mod real;
+pub mod savage_hutter;
+pub mod scheme;
+pub mod simulation;
+pub mod time;

@@ -1,0 +1,36 @@
+//! Ghost cells: the ends of the grid as copies, mirror images or the other end.
+
+use crate::field::Field;
+use crate::grid::{GHOSTS, Grid, Layout};
+use crate::scheme::{Boundary, Parts};
+
+/// Fill the ghost cells of `field`; `mirror(axis, value)` is the image across a wall.
+pub fn fill<const D: usize, P: Parts<f64>>(
+    field: &mut Field,
+    grid: &Grid<D>,
+    layout: &Layout,
+    mirror: impl Fn(usize, P) -> P,
+) {
+    for axis in 0..D {
+        let last = grid.cells[axis] as isize - 1;
+        let across = if axis == 0 { layout.rows } else { layout.columns } as isize;
+        let place = |i: isize, j: isize| if axis == 0 { layout.place(i, j) } else { layout.place(j, i) };
+        for ghost in 0..GHOSTS as isize {
+            for (side, target) in [(0, -1 - ghost), (1, last + 1 + ghost)] {
+                let edge = if side == 0 { 0 } else { last };
+                let inward = if side == 0 { edge + ghost } else { edge - ghost };
+                let source = match grid.boundary[axis][side] {
+                    Boundary::Open => edge,
+                    Boundary::Wall => inward,
+                    Boundary::Periodic => last - inward, // -1 - k is last - k, last + 1 + k is k
+                };
+                for j in 0..across {
+                    let value: P = field.get(place(source, j));
+                    let value =
+                        if grid.boundary[axis][side] == Boundary::Wall { mirror(axis, value) } else { value };
+                    field.set(place(target, j), value);
+                }
+            }
+        }
+    }
+}

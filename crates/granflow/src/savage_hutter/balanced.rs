@@ -1,0 +1,367 @@
+//! The conservative, positive, exactly resting scheme, in one and two dimensions, on chutes and on terrain.
+//!
+//! Kinetic flux between moving cells; no mass between cells that hold themselves; friction clipped after the flux,
+//! so that it stops and never reverses. The rules and what they were measured against:
+//! `docs/decisions/0002-rest.md`.
+
+use super::Flow;
+use super::flux::{Half, halves};
+use super::friction::Friction;
+use super::ground::{Bed, Towards};
+use crate::limiter;
+use crate::real::Real;
+use crate::scheme::{Cell, Faces, Near, Scheme, Side, Spacing, Watch};
+use std::marker::PhantomData;
+
+/// The default scheme: friction law, thinnest moving depth, order of accuracy.
+#[derive(Clone, Copy, Debug)]
+pub struct Balanced<F, B> {
+    /// The friction law.
+    pub friction: F,
+    /// A cell thinner than this keeps what it has (units of h; 0 allowed).
+    pub film: f64,
+    /// Limited slopes of h and u (second order, with [`crate::time::SSP_RK2`]).
+    pub slopes: bool,
+    bed: PhantomData<fn() -> B>,
+}
+
+impl<F, B> Balanced<F, B> {
+    /// First order, to be stepped by [`crate::time::EULER`].
+    pub fn first(friction: F, film: f64) -> Self {
+        Balanced { friction, film, slopes: false, bed: PhantomData }
+    }
+    /// Second order, to be stepped by [`crate::time::SSP_RK2`].
+    pub fn second(friction: F, film: f64) -> Self {
+        Balanced { slopes: true, ..Self::first(friction, film) }
+    }
+}
+
+/// Towards one neighbour.
+#[derive(Clone, Copy, Debug)]
+pub struct Edge<const D: usize, R> {
+    u: [R; D],
+    /// h u along the axis, outwards through this face.
+    outward: R,
+    /// What the kinetic density sends through this face.
+    half: Half<R>,
+    /// Rise of the free surface's potential towards the neighbour, and its part by thickness.
+    rise: R,
+    weight: R,
+}
+
+impl<const D: usize, R: Real> Edge<D, R> {
+    /// Nothing passes.
+    #[inline(always)]
+    fn closed() -> Self {
+        let zero = R::zero();
+        Edge { u: [zero; D], outward: zero, half: Half::none(), rise: zero, weight: zero }
+    }
+    /// The share of the outgoing density that the mean flow carries.
+    #[inline(always)]
+    fn carried(&self) -> R {
+        let none = self.half.mass.same(R::zero());
+        let share = self.outward.positive() / R::select(none, R::of(1.0), self.half.mass.abs());
+        R::select(none, R::zero(), share.min(R::of(1.0)))
+    }
+}
+
+/// What a cell offers to its faces.
+#[derive(Clone, Copy, Debug)]
+pub struct Edges<const D: usize, R: Real, B> {
+    lo: [Edge<D, R>; D],
+    hi: [Edge<D, R>; D],
+    bed: B,
+    /// Holds itself: thick, q = 0, and the pull is within the static bound.
+    held: R::Mask,
+    /// Dry, or a film, or outside: takes what comes, gives nothing.
+    void: R::Mask,
+}
+
+/// What passes a face.
+#[derive(Clone, Copy, Debug)]
+pub struct Flux<const D: usize, R> {
+    mass: R,
+    left: Seen<D, R>,
+    right: Seen<D, R>,
+}
+
+/// The face as one of its cells sees it.
+#[derive(Clone, Copy, Debug)]
+struct Seen<const D: usize, R> {
+    /// Momentum flux along the axis of the face.
+    momentum: [R; D],
+    /// Rise towards the other cell that the flux does not carry as pressure.
+    rise: R,
+    /// Rise by thickness, for the pressure's cross terms.
+    weight: R,
+}
+
+impl<const D: usize, R: Real> Seen<D, R> {
+    /// No momentum; the rises across `edge`, whole where a cell of the face is held.
+    #[inline(always)]
+    fn of(edge: &Edge<D, R>, whole: R::Mask) -> Self {
+        Seen {
+            momentum: [R::zero(); D],
+            rise: R::select(whole, edge.rise, edge.rise - edge.weight),
+            weight: R::select(whole, R::zero(), edge.weight),
+        }
+    }
+}
+
+impl<F: Friction, B: Copy> Balanced<F, B> {
+    /// A pull this much above the static bound still counts as held.
+    const SLACK: f64 = 1.0 + 1e-10;
+
+    #[inline(always)]
+    fn is_void<const D: usize, R: Real>(&self, h: R, bed: &B) -> R::Mask
+    where
+        B: Bed<D, R>,
+    {
+        h.lt(R::of(self.film)) | h.le(R::zero()) | bed.outside()
+    }
+
+    /// Rises towards both neighbours of one axis, as a resting cell counts them.
+    #[inline(always)]
+    fn rises<const D: usize, R: Real>(
+        &self,
+        near: &Near<D, R, Flow<D, R>, B>,
+        axis: usize,
+    ) -> ([R; 2], [R; 2])
+    where
+        B: Bed<D, R>,
+    {
+        let Cell { state, ground } = &near.here;
+        let dx = near.spacing.size[axis];
+        let (a, b) = (&near.lo[axis], &near.hi[axis]);
+        let h = state.h;
+        let lo = ground.rise(axis, Towards::Lo, &a.ground, h, a.state.h, dx);
+        let hi = ground.rise(axis, Towards::Hi, &b.ground, h, b.state.h, dx);
+        let (out_lo, out_hi) = (a.ground.outside(), b.ground.outside());
+        // Outside the data the surface goes on as it comes; from one side only, there is no difference.
+        let zero = R::zero();
+        let lo = R::select(out_lo, R::select(out_hi, zero, -hi), lo);
+        let hi = R::select(out_hi, R::select(out_lo, zero, -lo), hi);
+        // A bare bed above the surface leans on nothing: it counts at most as the surface continued.
+        let bare = |there: &Cell<Flow<D, R>, B>, rise: R, opposite: R| {
+            R::select(self.is_void(there.state.h, &there.ground), rise.min((-opposite).positive()), rise)
+        };
+        let bare_lo = R::select(zero.lt(lo), bare(a, lo, hi), lo);
+        let bare_hi = R::select(zero.lt(hi), bare(b, hi, lo), hi);
+        let weight = |there: &Cell<Flow<D, R>, B>, outside| {
+            R::select(outside, zero, ground.weight(&there.ground, h, there.state.h))
+        };
+        ([bare_lo, bare_hi], [weight(a, out_lo), weight(b, out_hi)])
+    }
+}
+
+impl<F: Friction, const D: usize, R: Real, B: Bed<D, R>> Scheme<D, R> for Balanced<F, B> {
+    type State = Flow<D, R>;
+    type Ground = B;
+    type Edges = Edges<D, R, B>;
+    type Flux = Flux<D, R>;
+
+    #[inline(always)]
+    fn reconstruct(&self, near: &Near<D, R, Flow<D, R>, B>) -> Edges<D, R, B> {
+        let Cell { state, ground } = near.here;
+        let (per, zero) = (near.spacing.per, R::zero());
+        let u = state.velocity();
+        let (mut rise, mut weight) = ([[zero; 2]; D], [[zero; 2]; D]);
+        for axis in 0..D {
+            (rise[axis], weight[axis]) = self.rises(near, axis);
+        }
+
+        let void = self.is_void(state.h, &ground);
+        let at_rest = ground.weight_at_rest();
+        let thickness = ground.thickness(state.h).max(R::of(f64::MIN_POSITIVE));
+        let holding = self.friction.resistance(thickness, zero, at_rest, at_rest).holding * R::of(Self::SLACK);
+        let (mut rise_lo, mut rise_hi) = ([zero; D], [zero; D]);
+        for axis in 0..D {
+            (rise_lo[axis], rise_hi[axis]) = (rise[axis][0], rise[axis][1]);
+        }
+        let pull = ground.pull(rise_lo, rise_hi, per);
+        let bound = holding + ground.rounding(state.h, per[0]);
+        let mut held = ground.square(pull).le(bound * bound) & state.is_still() & !void;
+        // A symmetric tower pulls nowhere, yet falls: bound the drop towards each neighbour too.
+        for axis in 0..D {
+            let drop = bound * near.spacing.size[axis] * ground.stretch(axis);
+            for side in 0..2 {
+                held = held & (-rise[axis][side]).min(-weight[axis][side]).le(drop);
+            }
+        }
+
+        let mut edges = Edges {
+            lo: [Edge::closed(); D],
+            hi: [Edge::closed(); D],
+            bed: ground,
+            held,
+            void,
+        };
+        for axis in 0..D {
+            (edges.lo[axis].rise, edges.hi[axis].rise) = (rise[axis][0], rise[axis][1]);
+            (edges.lo[axis].weight, edges.hi[axis].weight) = (weight[axis][0], weight[axis][1]);
+        }
+        if R::any(!(held | void)) {
+            let (mut ulo, mut uhi) = ([u; D], [u; D]);
+            let (mut hlo, mut hhi) = ([state.h; D], [state.h; D]);
+            if self.slopes {
+                for axis in 0..D {
+                    let (a, b) = (&near.lo[axis].state, &near.hi[axis].state);
+                    let (ua, ub) = (a.velocity(), b.velocity());
+                    let half = R::of(0.5);
+                    let dh = half * limiter::central(state.h - a.h, b.h - state.h);
+                    (hlo[axis], hhi[axis]) = ((state.h - dh).positive(), (state.h + dh).positive());
+                    for k in 0..D {
+                        let du = half * limiter::central(u[k] - ua[k], ub[k] - u[k]);
+                        (ulo[axis][k], uhi[axis][k]) = (u[k] - du, u[k] + du);
+                    }
+                }
+            }
+            for axis in 0..D {
+                let beta = ground.beta(axis);
+                let (lo, hi) = (&mut edges.lo[axis], &mut edges.hi[axis]);
+                (lo.u, hi.u) = (ulo[axis], uhi[axis]);
+                lo.outward = -(hlo[axis] * lo.u[axis]);
+                hi.outward = hhi[axis] * hi.u[axis];
+                if self.slopes {
+                    lo.half = halves(hlo[axis], lo.u[axis], beta).0;
+                    hi.half = halves(hhi[axis], hi.u[axis], beta).1;
+                } else {
+                    (lo.half, hi.half) = halves(state.h.positive(), u[axis], beta);
+                }
+            }
+        }
+        edges
+    }
+
+    #[inline(always)]
+    fn flux(&self, axis: usize, left: &Edges<D, R, B>, right: &Edges<D, R, B>) -> Flux<D, R> {
+        let zero = R::zero();
+        let (a, b) = (&left.hi[axis], &right.lo[axis]);
+        // A held cell and a void one give nothing.
+        let gives_a = !(left.held | left.void);
+        let gives_b = !(right.held | right.void);
+        let either = left.held | right.held;
+        let mut flux =
+            Flux { mass: zero, left: Seen::of(a, either), right: Seen::of(b, either) };
+        if R::any(gives_a | gives_b) {
+            let (half_a, half_b) = (a.half.only(gives_a), b.half.only(gives_b));
+            // Into a held cell goes only what is carried there, the rest of the density is reflected.
+            let share_a = R::select(right.held, a.carried(), R::of(1.0));
+            let share_b = R::select(left.held, b.carried(), R::of(1.0));
+            let (mass_a, mass_b) = (half_a.mass * share_a, half_b.mass * share_b);
+            let (turned_a, turned_b) = (left.bed.turn(a.u, &right.bed), right.bed.turn(b.u, &left.bed));
+            flux.mass = mass_a + mass_b;
+            for k in 0..D {
+                flux.left.momentum[k] = mass_a * a.u[k] + mass_b * turned_b[k];
+                flux.right.momentum[k] = mass_a * turned_a[k] + mass_b * b.u[k];
+            }
+            // A held cell feels its neighbours' thickness through its pull; of the flux it takes the impact.
+            let both = half_a.push + half_b.push;
+            let push_a = R::select(right.held, half_a.reflected(a.u[axis], share_a), both);
+            let push_b = R::select(left.held, half_b.reflected(b.u[axis], share_b), both);
+            flux.left.momentum[axis] = flux.left.momentum[axis] + R::select(left.held, zero, push_a);
+            flux.right.momentum[axis] = flux.right.momentum[axis] + R::select(right.held, zero, push_b);
+        }
+        flux
+    }
+
+    #[inline(always)]
+    fn update(
+        &self,
+        here: &Cell<Flow<D, R>, B>,
+        edges: &Edges<D, R, B>,
+        faces: &[Faces<Flux<D, R>>; D],
+        spacing: &Spacing<D, R>,
+        dt: R,
+    ) -> Flow<D, R> {
+        let (zero, per) = (R::zero(), spacing.per);
+        let Flow { h, q } = here.state;
+        let bed = &here.ground;
+        let mut new = h;
+        let mut moved = q;
+        for axis in 0..D {
+            let Faces { lo, hi } = &faces[axis];
+            let lambda = dt * per[axis];
+            new = new - lambda * (hi.mass - lo.mass);
+            for k in 0..D {
+                moved[k] = moved[k] - lambda * (hi.left.momentum[k] - lo.right.momentum[k]);
+            }
+        }
+        // The depth under the source: the new one keeps draining cells bounded; at second order the old one
+        // keeps the map a forward-Euler step wherever the depth does not halve.
+        let depth = if self.slopes { h.min(new + new) } else { new }.positive();
+        let (mut rise, mut weight) = ([[zero; D]; 2], [[zero; D]; 2]);
+        for axis in 0..D {
+            let Faces { lo, hi } = &faces[axis];
+            (rise[0][axis], rise[1][axis]) = (lo.right.rise, hi.left.rise);
+            (weight[0][axis], weight[1][axis]) = (lo.right.weight, hi.left.weight);
+        }
+        let pull = bed.pull(rise[0], rise[1], per);
+        let cross = bed.cross(weight[0], weight[1], per);
+        for k in 0..D {
+            let bend = R::select(edges.held, zero, bed.bend(k) * h);
+            moved[k] = moved[k] + dt * depth * (pull[k] + cross[k] + bend);
+        }
+
+        let thickness = bed.thickness(new).max(R::of(f64::MIN_POSITIVE));
+        let old = here.state.velocity();
+        let speed = bed.square(old).sqrt();
+        let law = self.friction.resistance(thickness, speed, bed.load(old), bed.weight_at_rest());
+        let still = here.state.is_still();
+        let slack = R::of(Self::SLACK);
+        let resting = law.holding * slack + bed.rounding(h, per[0]);
+        let dry = R::select(edges.held, resting, R::select(still, law.holding, law.dry));
+        let size = bed.square(moved).sqrt();
+        let loss = dt * depth * dry;
+        let left = size - loss;
+        let stops = left.le(zero) | new.lt(R::of(self.film)) | new.le(zero);
+        let safe = R::select(stops, R::of(1.0), size);
+        // v + dt drag v^2 = left/h, solved for v: the part that grows with the square, implicitly.
+        let z = dt * law.drag * left / R::select(stops, R::of(1.0), new);
+        let damped = R::of(2.0) / (R::of(1.0) + (R::of(1.0) + R::of(4.0) * R::select(stops, zero, z)).sqrt());
+        let keep = left / safe * damped;
+        for m in &mut moved {
+            *m = R::select(stops, zero, *m * keep);
+        }
+        Flow { h: new, q: moved }
+    }
+
+    fn mirror(&self, axis: usize, state: &Flow<D, R>) -> Flow<D, R> {
+        state.mirror(axis)
+    }
+    fn mirror_ground(&self, axis: usize, ground: &B) -> B {
+        ground.mirror(axis)
+    }
+    /// A film never sets the step.
+    #[inline(always)]
+    fn rate(&self, here: &Cell<Flow<D, R>, B>, spacing: &Spacing<D, R>) -> R {
+        let rate = here.state.rate(&here.ground, spacing.per);
+        R::select(self.is_void(here.state.h, &here.ground), R::zero(), rate)
+    }
+    /// A cell whose last stage ended at rest is at rest; its depth is the average.
+    #[inline(always)]
+    fn average(&self, keep: R, old: &Flow<D, R>, new: &Flow<D, R>) -> Flow<D, R> {
+        let give = R::of(1.0) - keep;
+        let stopped = new.is_still();
+        Flow {
+            h: keep * old.h + give * new.h,
+            q: std::array::from_fn(|k| R::select(stopped, R::zero(), keep * old.q[k] + give * new.q[k])),
+        }
+    }
+    #[inline(always)]
+    fn rests(&self, edges: &Edges<D, R, B>) -> R::Mask {
+        edges.held | edges.void
+    }
+    #[inline(always)]
+    fn outside(&self, ground: &B) -> R::Mask {
+        ground.outside()
+    }
+    #[inline(always)]
+    fn booked(&self, flux: &Flux<D, R>, _side: Side) -> R {
+        flux.mass
+    }
+    #[inline(always)]
+    fn watch(&self, here: &Cell<Flow<D, R>, B>) -> Watch<R> {
+        here.state.watch(&here.ground, R::of(self.film))
+    }
+}

@@ -1,0 +1,345 @@
+//! What is fixed in a cell: the papers' chute, or a piece of a mountain.
+
+use crate::real::{Real, dot};
+use crate::scheme::Parts;
+
+/// The neighbour's place along an axis.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Towards {
+    /// Smaller coordinates.
+    Lo,
+    /// Larger coordinates.
+    Hi,
+}
+
+/// The bed under a cell, with all of the model that depends on it.
+///
+/// The pull of a mass at rest is F = -M grad(psi), psi the potential of the free surface per mass, M the metric of
+/// horizontal vectors (identity on a chute, I - s s^T on terrain).
+pub trait Bed<const D: usize, R: Real>: Parts<R> {
+    /// Pressure coefficient along `axis`: P = beta h^2/2.
+    fn beta(&self, axis: usize) -> R;
+    /// psi at the neighbour minus psi here, depths `h_there` and `h`; `dx` is their distance.
+    fn rise(&self, axis: usize, towards: Towards, there: &Self, h: R, h_there: R, dx: R) -> R;
+    /// The part of the rise that the momentum flux carries as pressure.
+    fn weight(&self, there: &Self, h: R, h_there: R) -> R;
+    /// Acceleration -M (hi - lo)/(2 dx) of the rises towards both neighbours of each axis.
+    fn pull(&self, lo: [R; D], hi: [R; D], per: [R; D]) -> [R; D];
+    /// The part of [`Bed::pull`] that a pressure along the other axes makes (off the diagonal of M).
+    fn cross(&self, lo: [R; D], hi: [R; D], per: [R; D]) -> [R; D];
+    /// Acceleration per depth that the change of beta and of the bed's tilt along `axis` leaves beside the flux.
+    fn bend(&self, axis: usize) -> R;
+    /// Normal acceleration under a mass of velocity `w`, N+ = max(N, 0).
+    fn load(&self, w: [R; D]) -> R;
+    /// Normal acceleration at rest.
+    fn weight_at_rest(&self) -> R;
+    /// Squared physical length of the tangential vector with horizontal part `v`.
+    fn square(&self, v: [R; D]) -> R;
+    /// Length along the bed of a unit step along `axis`.
+    fn stretch(&self, axis: usize) -> R;
+    /// `w` turned into the tangent plane of `to`, at the same speed along the bed.
+    fn turn(&self, w: [R; D], to: &Self) -> [R; D];
+    /// Thickness normal to the bed.
+    fn thickness(&self, h: R) -> R;
+    /// Rounding of a rise divided by dx: the uncertainty of the pull.
+    fn rounding(&self, h: R, per: R) -> R;
+    /// Outside the data.
+    fn outside(&self) -> R::Mask;
+    /// The mirror image across a wall normal to `axis`.
+    fn mirror(self, axis: usize) -> Self;
+}
+
+/// Central differences -(hi - lo)/(2 dx) of the rises towards both neighbours.
+#[inline(always)]
+fn straight<const D: usize, R: Real>(lo: [R; D], hi: [R; D], per: [R; D]) -> [R; D] {
+    let mut difference = lo;
+    for axis in 0..D {
+        difference[axis] = (lo[axis] - hi[axis]) * (per[axis] * R::of(0.5));
+    }
+    difference
+}
+
+/// The papers' chute (report eqs. 1 and 13), in their scaling; also a tilted plane in two dimensions.
+///
+/// psi = beta h per cell pair with P = beta h^2/2: a variable beta enters as h (beta_hi - beta_lo)/2.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Chute<const D: usize, R> {
+    /// sin(zeta), as a vector down the slope.
+    pub tilt: [R; D],
+    /// epsilon k cos(zeta).
+    pub beta: R,
+    /// cos(zeta).
+    pub cos: R,
+    /// eta kappa: curvature of the chute times L/R; N = cos(zeta) + eta kappa u^2.
+    pub curvature: R,
+}
+
+impl<const D: usize, R: Real> Parts<R> for Chute<D, R> {
+    const COUNT: usize = D + 3;
+    #[inline(always)]
+    fn gather(part: impl Fn(usize) -> R) -> Self {
+        let mut tilt = [R::zero(); D];
+        for (axis, tilt) in tilt.iter_mut().enumerate() {
+            *tilt = part(axis);
+        }
+        Chute {
+            tilt,
+            beta: part(D),
+            cos: part(D + 1),
+            curvature: part(D + 2),
+        }
+    }
+    #[inline(always)]
+    fn scatter(self, mut put: impl FnMut(usize, R)) {
+        for axis in 0..D {
+            put(axis, self.tilt[axis]);
+        }
+        put(D, self.beta);
+        put(D + 1, self.cos);
+        put(D + 2, self.curvature);
+    }
+}
+
+impl<const D: usize, R: Real> Bed<D, R> for Chute<D, R> {
+    #[inline(always)]
+    fn beta(&self, _axis: usize) -> R {
+        self.beta
+    }
+    #[inline(always)]
+    fn rise(&self, axis: usize, towards: Towards, there: &Self, h: R, h_there: R, dx: R) -> R {
+        let fall = self.tilt[axis] * dx;
+        let weight = self.weight(there, h, h_there);
+        match towards {
+            Towards::Hi => weight - fall,
+            Towards::Lo => weight + fall,
+        }
+    }
+    #[inline(always)]
+    fn weight(&self, there: &Self, h: R, h_there: R) -> R {
+        self.beta * (h_there - h) + (there.beta - self.beta) * h * R::of(0.5)
+    }
+    #[inline(always)]
+    fn pull(&self, lo: [R; D], hi: [R; D], per: [R; D]) -> [R; D] {
+        straight(lo, hi, per)
+    }
+    #[inline(always)]
+    fn cross(&self, _lo: [R; D], _hi: [R; D], _per: [R; D]) -> [R; D] {
+        [R::zero(); D]
+    }
+    #[inline(always)]
+    fn bend(&self, _axis: usize) -> R {
+        R::zero()
+    }
+    #[inline(always)]
+    fn load(&self, w: [R; D]) -> R {
+        (self.cos + self.curvature * dot(w, w)).positive()
+    }
+    #[inline(always)]
+    fn weight_at_rest(&self) -> R {
+        self.cos
+    }
+    #[inline(always)]
+    fn square(&self, v: [R; D]) -> R {
+        dot(v, v)
+    }
+    #[inline(always)]
+    fn stretch(&self, _axis: usize) -> R {
+        R::of(1.0)
+    }
+    #[inline(always)]
+    fn turn(&self, w: [R; D], _to: &Self) -> [R; D] {
+        w
+    }
+    #[inline(always)]
+    fn thickness(&self, h: R) -> R {
+        h
+    }
+    #[inline(always)]
+    fn rounding(&self, h: R, per: R) -> R {
+        R::of(1e-14) * (self.beta * h * per + self.cos)
+    }
+    #[inline(always)]
+    fn outside(&self) -> R::Mask {
+        self.cos.lt(R::zero())
+    }
+    fn mirror(mut self, axis: usize) -> Self {
+        self.tilt[axis] = -self.tilt[axis];
+        self
+    }
+}
+
+/// A cell of a terrain z = b(x, y), SI units (Bouchut & Westdickenberg, Commun. Math. Sci. 2, 2004, for the true
+/// horizontal velocity w and the volume per plan area H = h/c).
+///
+/// psi = g (b + c^2 H), M = I - s s^T, s = c grad b, beta = g c^2 (1 - s_axis^2). A cell outside the data has c = 0.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Terrain<const D: usize, R> {
+    /// g b \[m^2/s^2\].
+    pub level: R,
+    /// grad b.
+    pub slope: [R; D],
+    /// c = 1/sqrt(1 + |grad b|^2).
+    pub cos: R,
+    /// g c \[m/s^2\].
+    pub fall: R,
+    /// c D^2 b \[1/m\]; only the upper triangle is stored.
+    pub curvature: [[R; D]; D],
+    /// See [`Bed::bend`]: (beta_hi - beta_lo)/(4 dx) - g (1 - s^2) (c_hi^2 - c_lo^2)/(2 dx).
+    pub bend: [R; D],
+}
+
+impl<const D: usize, R: Real> Terrain<D, R> {
+    /// A cell outside the data.
+    pub fn outside() -> Self {
+        let zero = R::zero();
+        Terrain {
+            level: zero,
+            slope: [zero; D],
+            cos: zero,
+            fall: zero,
+            curvature: [[zero; D]; D],
+            bend: [zero; D],
+        }
+    }
+    #[inline(always)]
+    fn metric(&self, mut v: [R; D]) -> [R; D] {
+        let along = self.cos * self.cos * dot(self.slope, v);
+        for axis in 0..D {
+            v[axis] = v[axis] - self.slope[axis] * along;
+        }
+        v
+    }
+}
+
+impl<const D: usize, R: Real> Parts<R> for Terrain<D, R> {
+    const COUNT: usize = 3 + 2 * D + D * (D + 1) / 2;
+    #[inline(always)]
+    fn gather(part: impl Fn(usize) -> R) -> Self {
+        let packed = |i: usize, j: usize| {
+            let (i, j) = if i < j { (i, j) } else { (j, i) };
+            3 + 2 * D + i * D + j - i * (i + 1) / 2
+        };
+        let mut cell =
+            Terrain { level: part(0), cos: part(1), fall: part(2), ..Terrain::outside() };
+        for i in 0..D {
+            cell.slope[i] = part(3 + i);
+            cell.bend[i] = part(3 + D + i);
+            for j in 0..D {
+                cell.curvature[i][j] = part(packed(i, j));
+            }
+        }
+        cell
+    }
+    #[inline(always)]
+    fn scatter(self, mut put: impl FnMut(usize, R)) {
+        put(0, self.level);
+        put(1, self.cos);
+        put(2, self.fall);
+        let mut next = 3 + 2 * D;
+        for i in 0..D {
+            put(3 + i, self.slope[i]);
+            put(3 + D + i, self.bend[i]);
+            for j in i..D {
+                put(next, self.curvature[i][j]);
+                next += 1;
+            }
+        }
+    }
+}
+
+impl<const D: usize, R: Real> Bed<D, R> for Terrain<D, R> {
+    #[inline(always)]
+    fn beta(&self, axis: usize) -> R {
+        let s = self.cos * self.slope[axis];
+        self.fall * self.cos * (R::of(1.0) - s * s)
+    }
+    #[inline(always)]
+    fn rise(&self, _axis: usize, _towards: Towards, there: &Self, h: R, h_there: R, _dx: R) -> R {
+        (there.level - self.level) + self.weight(there, h, h_there)
+    }
+    #[inline(always)]
+    fn weight(&self, there: &Self, h: R, h_there: R) -> R {
+        there.fall * there.cos * h_there - self.fall * self.cos * h
+    }
+    #[inline(always)]
+    fn pull(&self, lo: [R; D], hi: [R; D], per: [R; D]) -> [R; D] {
+        self.metric(straight(lo, hi, per))
+    }
+    #[inline(always)]
+    fn cross(&self, lo: [R; D], hi: [R; D], per: [R; D]) -> [R; D] {
+        let straight = straight(lo, hi, per);
+        let c2 = self.cos * self.cos;
+        let mut cross = [R::zero(); D];
+        for axis in 0..D {
+            let mut others = straight;
+            others[axis] = R::zero();
+            cross[axis] = -(self.slope[axis] * (c2 * dot(self.slope, others)));
+        }
+        cross
+    }
+    #[inline(always)]
+    fn bend(&self, axis: usize) -> R {
+        self.bend[axis]
+    }
+    #[inline(always)]
+    fn load(&self, w: [R; D]) -> R {
+        let mut bent = R::zero();
+        for axis in 0..D {
+            bent = bent + w[axis] * dot(self.curvature[axis], w);
+        }
+        (self.fall + bent).positive()
+    }
+    #[inline(always)]
+    fn weight_at_rest(&self) -> R {
+        self.fall
+    }
+    #[inline(always)]
+    fn square(&self, v: [R; D]) -> R {
+        let up = dot(self.slope, v);
+        dot(v, v) + up * up
+    }
+    #[inline(always)]
+    fn stretch(&self, axis: usize) -> R {
+        (R::of(1.0) + self.slope[axis] * self.slope[axis]).sqrt()
+    }
+    #[inline(always)]
+    fn turn(&self, w: [R; D], to: &Self) -> [R; D] {
+        // V = (w, grad b . w); what sticks out of the receiver's plane is cut off and the rest stretched to |V|.
+        let up = dot(self.slope, w);
+        let out = up - dot(to.slope, w);
+        let c2 = to.cos * to.cos;
+        let whole = dot(w, w) + up * up;
+        let left = whole - c2 * (out * out);
+        let flat = left.le(R::zero());
+        let stretch = R::select(flat, R::of(1.0), (whole / R::select(flat, R::of(1.0), left)).sqrt());
+        let mut turned = w;
+        for axis in 0..D {
+            turned[axis] = (w[axis] + c2 * out * to.slope[axis]) * stretch;
+        }
+        turned
+    }
+    #[inline(always)]
+    fn thickness(&self, h: R) -> R {
+        self.cos * h
+    }
+    #[inline(always)]
+    fn rounding(&self, h: R, per: R) -> R {
+        // 1e-14 g (|eta| + dx)/dx
+        R::of(1e-14) * ((self.level.abs() + self.fall * self.cos * h) * per + self.fall / self.cos)
+    }
+    #[inline(always)]
+    fn outside(&self) -> R::Mask {
+        self.cos.le(R::zero())
+    }
+    fn mirror(mut self, axis: usize) -> Self {
+        self.slope[axis] = -self.slope[axis];
+        self.bend[axis] = -self.bend[axis];
+        for other in 0..D {
+            if other != axis {
+                self.curvature[axis][other] = -self.curvature[axis][other];
+                self.curvature[other][axis] = -self.curvature[other][axis];
+            }
+        }
+        self
+    }
+}

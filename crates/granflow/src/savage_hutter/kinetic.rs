@@ -1,0 +1,262 @@
+//! The five published kinetic schemes as five constants of one [`Kinetic`].
+//!
+//! Kaland & Struckmeier 2007 (report, Schemes 1-3) and Kaland 2007 (thesis, Verfahren 1-5), errata corrected; in
+//! two dimensions on a plane by applying the fluxes along each axis, the (1, 2, 1)/4 depth per axis and static
+//! friction as the projection onto a disc.
+
+use super::Flow;
+use super::flux::halves;
+use super::friction::{Coulomb, Friction};
+use super::ground::{Bed, Chute, Towards};
+use crate::real::{Real, dot};
+use crate::scheme::{Cell, Faces, Near, Scheme, Side, Spacing, Watch};
+
+/// The depth that enters the half moments at a face.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum FaceDepth {
+    /// Each cell's own depth: the flux F.
+    Own,
+    /// (h_i + h_{i+1})/2 on both sides: the flux F~.
+    Mean,
+}
+
+/// When a cell takes the static source.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum RestTest {
+    /// q = 0.
+    Still,
+    /// |q| < dt |g(q)| h^{n+1}, or q = 0.
+    Slow,
+}
+
+/// The depth in the static source.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum StaticDepth {
+    /// h_i^{n+1}.
+    New,
+    /// (h_{i-1} + 2 h_i + h_{i+1})/4 per axis (report eq. 27).
+    Smoothed,
+}
+
+/// A published scheme as five choices, on a plane chute with Coulomb friction.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Kinetic {
+    /// Face depth of a moving cell.
+    pub moving: FaceDepth,
+    /// Face depth of a resting cell.
+    pub resting: FaceDepth,
+    /// When a cell counts as resting.
+    pub rest: RestTest,
+    /// Depth in the static source.
+    pub static_depth: StaticDepth,
+    /// Blend by mu = -q/(dt g(q) h^{n+1}).
+    pub blend: bool,
+    /// mu = tan(delta).
+    pub friction: Coulomb,
+}
+
+/// Verfahren 1 = Scheme 1. The friction of the constants is a placeholder for the case's.
+pub const VERFAHREN_1: Kinetic = Kinetic {
+    moving: FaceDepth::Own,
+    resting: FaceDepth::Own,
+    rest: RestTest::Still,
+    static_depth: StaticDepth::New,
+    blend: false,
+    friction: Coulomb { mu: 0.0 },
+};
+/// Verfahren 2.
+pub const VERFAHREN_2: Kinetic = Kinetic {
+    moving: FaceDepth::Mean,
+    resting: FaceDepth::Mean,
+    static_depth: StaticDepth::Smoothed,
+    ..VERFAHREN_1
+};
+/// Verfahren 3.
+pub const VERFAHREN_3: Kinetic = Kinetic { rest: RestTest::Slow, ..VERFAHREN_2 };
+/// Verfahren 4 = Scheme 2.
+pub const VERFAHREN_4: Kinetic = Kinetic { blend: true, ..VERFAHREN_3 };
+/// Verfahren 5 = Scheme 3.
+pub const VERFAHREN_5: Kinetic = Kinetic { moving: FaceDepth::Own, ..VERFAHREN_4 };
+
+/// What a cell offers to its faces and keeps for its update.
+#[derive(Clone, Copy, Debug)]
+pub struct Edges<const D: usize, R> {
+    here: Flow<D, R>,
+    u: [R; D],
+    beta: R,
+    /// beta D h - tilt per axis: the pull that friction must hold, as an acceleration.
+    excess: [R; D],
+    smoothed: [R; D],
+}
+
+/// Mass and momentum through a face, once with the moving and once with the resting cell's face depth.
+#[derive(Clone, Copy, Debug)]
+pub struct Flux<const D: usize, R> {
+    moving: Flow<D, R>,
+    resting: Flow<D, R>,
+}
+
+impl Kinetic {
+    /// F or F~ through the face between `left` and `right`.
+    #[inline(always)]
+    fn through<const D: usize, R: Real>(
+        depth: FaceDepth,
+        axis: usize,
+        left: &Edges<D, R>,
+        right: &Edges<D, R>,
+    ) -> Flow<D, R> {
+        let mean = (left.here.h + right.here.h) * R::of(0.5);
+        let (hl, hr) = match depth {
+            FaceDepth::Own => (left.here.h, right.here.h),
+            FaceDepth::Mean => (mean, mean),
+        };
+        let out = halves(hl, left.u[axis], left.beta).1;
+        let back = halves(hr, right.u[axis], right.beta).0;
+        let mut q: [R; D] = std::array::from_fn(|k| out.mass * left.u[k] + back.mass * right.u[k]);
+        q[axis] = q[axis] + (out.push + back.push);
+        Flow { h: out.mass + back.mass, q }
+    }
+}
+
+impl<const D: usize, R: Real> Scheme<D, R> for Kinetic {
+    type State = Flow<D, R>;
+    type Ground = Chute<D, R>;
+    type Edges = Edges<D, R>;
+    type Flux = Flux<D, R>;
+
+    #[inline(always)]
+    fn reconstruct(&self, near: &Near<D, R, Flow<D, R>, Chute<D, R>>) -> Edges<D, R> {
+        let Cell { state, ground } = near.here;
+        let lo: [R; D] = std::array::from_fn(|k| near.lo[k].state.h);
+        let hi: [R; D] = std::array::from_fn(|k| near.hi[k].state.h);
+        let rise = |towards, axis: usize| {
+            let there = if towards == Towards::Lo { &near.lo[axis] } else { &near.hi[axis] };
+            ground.rise(axis, towards, &there.ground, state.h, there.state.h, near.spacing.size[axis])
+        };
+        let pull = ground.pull(
+            std::array::from_fn(|k| rise(Towards::Lo, k)),
+            std::array::from_fn(|k| rise(Towards::Hi, k)),
+            near.spacing.per,
+        );
+        Edges {
+            here: state,
+            u: state.velocity(),
+            beta: ground.beta,
+            excess: pull.map(|f| -f),
+            smoothed: std::array::from_fn(|k| (lo[k] + (state.h + state.h) + hi[k]) * R::of(0.25)),
+        }
+    }
+
+    #[inline(always)]
+    fn flux(&self, axis: usize, left: &Edges<D, R>, right: &Edges<D, R>) -> Flux<D, R> {
+        let moving = Self::through(self.moving, axis, left, right);
+        let resting =
+            if self.resting == self.moving { moving } else { Self::through(self.resting, axis, left, right) };
+        Flux { moving, resting }
+    }
+
+    #[inline(always)]
+    fn update(
+        &self,
+        here: &Cell<Flow<D, R>, Chute<D, R>>,
+        edges: &Edges<D, R>,
+        faces: &[Faces<Flux<D, R>>; D],
+        spacing: &Spacing<D, R>,
+        dt: R,
+    ) -> Flow<D, R> {
+        let Flow { h, q } = here.state;
+        let ground = &here.ground;
+        let lambda = spacing.per.map(|per| dt * per);
+        let zero = R::zero();
+        let divergence = |pick: fn(&Flux<D, R>) -> Flow<D, R>, part: fn(&Flow<D, R>, usize) -> R, k: usize| {
+            let mut sum = zero;
+            for axis in 0..D {
+                let (lo, hi) = (pick(&faces[axis].lo), pick(&faces[axis].hi));
+                sum = sum + lambda[axis] * (part(&hi, k) - part(&lo, k));
+            }
+            sum
+        };
+        let mass = |flow: &Flow<D, R>, _: usize| flow.h;
+        let momentum = |flow: &Flow<D, R>, k: usize| flow.q[k];
+        let moving_h = h - divergence(|f| f.moving, mass, 0);
+        let resting_h = h - divergence(|f| f.resting, mass, 0);
+
+        // g(q) = tilt - R q/|q|
+        let bound = self.friction.resistance(h, zero, ground.cos, ground.cos).holding;
+        let still = here.state.is_still();
+        let size = dot(q, q).sqrt();
+        let per = R::of(1.0) / R::select(still, R::of(1.0), size);
+        let g: [R; D] = std::array::from_fn(|k| ground.tilt[k] - bound * (q[k] * per));
+
+        // g~: the static force per mass, tilt plus the excess cut to the disc of radius R
+        let excess = dot(edges.excess, edges.excess).sqrt();
+        let over = bound.lt(excess);
+        let cut = R::select(over, bound / R::select(over, excess, R::of(1.0)), R::of(1.0));
+        let held: [R; D] = std::array::from_fn(|k| ground.tilt[k] + edges.excess[k] * cut);
+
+        let square = dot(g, g);
+        let slow = size.lt(dt * square.sqrt() * moving_h) | still;
+        let rests = match self.rest {
+            RestTest::Still => still,
+            RestTest::Slow => slow,
+        };
+        // 1 - mu with mu = -q.g/(dt |g|^2 h^{n+1}); q = 0 is rest in words
+        let weight = dt * square * moving_h;
+        let no_weight = weight.same(zero) | still;
+        let blend = R::of(1.0)
+            + R::select(no_weight, zero, dot(q, g) / R::select(no_weight, R::of(1.0), weight));
+        let static_depth = |k: usize| match self.static_depth {
+            StaticDepth::New => resting_h,
+            StaticDepth::Smoothed => edges.smoothed[k],
+        };
+        Flow {
+            h: R::select(rests, resting_h, moving_h),
+            q: std::array::from_fn(|k| {
+                let source = dt * held[k] * static_depth(k);
+                let rest = if self.blend { blend * source } else { q[k] + source };
+                R::select(
+                    rests,
+                    rest - divergence(|f| f.resting, momentum, k),
+                    q[k] - divergence(|f| f.moving, momentum, k) + dt * g[k] * moving_h,
+                )
+            }),
+        }
+    }
+
+    fn mirror(&self, axis: usize, state: &Flow<D, R>) -> Flow<D, R> {
+        state.mirror(axis)
+    }
+    fn mirror_ground(&self, axis: usize, ground: &Chute<D, R>) -> Chute<D, R> {
+        ground.mirror(axis)
+    }
+    #[inline(always)]
+    fn rate(&self, here: &Cell<Flow<D, R>, Chute<D, R>>, spacing: &Spacing<D, R>) -> R {
+        here.state.rate(&here.ground, spacing.per)
+    }
+    #[inline(always)]
+    fn average(&self, keep: R, old: &Flow<D, R>, new: &Flow<D, R>) -> Flow<D, R> {
+        let give = R::of(1.0) - keep;
+        Flow {
+            h: keep * old.h + give * new.h,
+            q: std::array::from_fn(|k| keep * old.q[k] + give * new.q[k]),
+        }
+    }
+    /// The published schemes prove no rest; a dry cell counts.
+    #[inline(always)]
+    fn rests(&self, edges: &Edges<D, R>) -> R::Mask {
+        edges.here.h.same(R::zero())
+    }
+    #[inline(always)]
+    fn outside(&self, ground: &Chute<D, R>) -> R::Mask {
+        ground.outside()
+    }
+    /// The flux of the moving depth; a resting edge cell of Verfahren 5 books the other one (erratum 5).
+    #[inline(always)]
+    fn booked(&self, flux: &Flux<D, R>, _side: Side) -> R {
+        flux.moving.h
+    }
+    #[inline(always)]
+    fn watch(&self, here: &Cell<Flow<D, R>, Chute<D, R>>) -> Watch<R> {
+        here.state.watch(&here.ground, R::zero())
+    }
+}

@@ -1,0 +1,418 @@
+//! A run in memory: fields, clock, tiles and ledger.
+
+use crate::backend::{EXITS, Sweep, TILE, Tally, Tile};
+use crate::boundary;
+use crate::field::Field;
+use crate::grid::{Grid, Layout};
+use crate::observe::Maps;
+use crate::scheme::{Cell, Scheme, Spacing, Watch};
+use crate::time::Stages;
+
+/// How long a step is.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum StepSize {
+    /// The same dt every step.
+    Fixed(f64),
+    /// dt = courant / max over cells of sum over axes of (|u| + sqrt(2 beta h))/dx.
+    Courant(f64),
+}
+
+/// A sum that keeps what rounding drops (Neumaier 1974).
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Sum {
+    high: f64,
+    low: f64,
+}
+
+impl Sum {
+    /// Add a number.
+    pub fn add(&mut self, value: f64) {
+        let sum = self.high + value;
+        self.low += if self.high.abs() >= value.abs() {
+            (self.high - sum) + value
+        } else {
+            (value - sum) + self.high
+        };
+        self.high = sum;
+    }
+    /// The sum.
+    pub fn value(&self) -> f64 {
+        self.high + self.low
+    }
+    /// The two numbers that make it, for a checkpoint.
+    pub fn parts(&self) -> [f64; 2] {
+        [self.high, self.low]
+    }
+    /// From [`Sum::parts`].
+    pub fn from_parts([high, low]: [f64; 2]) -> Sum {
+        Sum { high, low }
+    }
+}
+
+/// Why a step could not be taken.
+#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+pub enum Failure {
+    /// A state became infinite or not a number.
+    #[error("the state is not finite after step {step}, time {time}: take a smaller step, or a positive scheme (verfahren_1, balanced)")]
+    NotFinite {
+        /// Steps done.
+        step: u64,
+        /// Time reached.
+        time: f64,
+    },
+    /// The step became too small to advance the clock.
+    #[error("the step collapsed to {dt:e} at step {step}, time {time}: some speed has grown without bound")]
+    Collapsed {
+        /// Steps done.
+        step: u64,
+        /// Time reached.
+        time: f64,
+        /// The step asked for.
+        dt: f64,
+    },
+}
+
+/// Sums over the whole grid.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Totals {
+    /// Volume (length x depth in one dimension): sum of h times the cell measure.
+    pub volume: f64,
+    /// Part of it in films.
+    pub film: f64,
+    /// Largest speed along the bed.
+    pub speed: f64,
+    /// Kinetic energy per density.
+    pub energy: f64,
+    /// Cells with a depth.
+    pub wet: usize,
+    /// Cells with a momentum.
+    pub moving: usize,
+}
+
+/// The fields of a run, its clock and its books.
+pub struct Simulation<const D: usize, S: Scheme<D, f64>> {
+    scheme: S,
+    grid: Grid<D>,
+    layout: Layout,
+    spacing: Spacing<D, f64>,
+    grounds: Field,
+    stages: Stages,
+    step_size: StepSize,
+    now: Field,
+    next: Field,
+    tiles: Vec<Tile>,
+    across: usize,
+    tallies: Vec<Tally>,
+    quiet: Vec<bool>,
+    awake: Vec<u32>,
+    found: Vec<Tally>,
+    /// Summary maps, kept while present.
+    pub maps: Option<Maps>,
+    time: f64,
+    step: u64,
+    updates: u64,
+    out: [Sum; 5],
+}
+
+impl<const D: usize, S: Scheme<D, f64>> Simulation<D, S> {
+    /// A run from the ground and the initial state of every cell, given by index per axis.
+    pub fn new(
+        scheme: S,
+        grid: Grid<D>,
+        stages: Stages,
+        step_size: StepSize,
+        ground: impl Fn([usize; D]) -> S::Ground,
+        initial: impl Fn([usize; D]) -> S::State,
+    ) -> Self {
+        let layout = Layout::of(&grid);
+        let mut bed = Field::zeros::<S::Ground>(&layout);
+        let mut now = Field::zeros::<S::State>(&layout);
+        for number in 0..grid.count() {
+            let index = grid.index(number);
+            bed.set(Self::place_in(&layout, index), ground(index));
+            now.set(Self::place_in(&layout, index), initial(index));
+        }
+        boundary::fill(&mut bed, &grid, &layout, |axis, g| scheme.mirror_ground(axis, &g));
+        let (tiles, across) = cut(&layout, |i, j| {
+            scheme.outside(&bed.get(layout.place(i, j)))
+        });
+        let mut simulation = Simulation {
+            spacing: Spacing::new(grid.size),
+            next: now.clone(),
+            tallies: vec![Tally::NONE; tiles.len()],
+            quiet: vec![false; tiles.len()],
+            awake: Vec::with_capacity(tiles.len()),
+            found: vec![Tally::NONE; tiles.len()],
+            grounds: bed,
+            maps: None,
+            time: 0.0,
+            step: 0,
+            updates: 0,
+            out: [Sum::default(); 5],
+            scheme,
+            grid,
+            layout,
+            stages,
+            step_size,
+            now,
+            tiles,
+            across,
+        };
+        simulation.survey();
+        simulation
+    }
+
+    fn place_in(layout: &Layout, index: [usize; D]) -> usize {
+        layout.place(index[0] as isize, if D > 1 { index[D - 1] as isize } else { 0 })
+    }
+    /// Place of a cell in the padded arrays.
+    pub fn place(&self, index: [usize; D]) -> usize {
+        Self::place_in(&self.layout, index)
+    }
+    /// The grid.
+    pub fn grid(&self) -> &Grid<D> {
+        &self.grid
+    }
+    /// The memory layout.
+    pub fn layout(&self) -> &Layout {
+        &self.layout
+    }
+    /// The scheme.
+    pub fn scheme(&self) -> &S {
+        &self.scheme
+    }
+    /// Time reached.
+    pub fn time(&self) -> f64 {
+        self.time
+    }
+    /// Steps done.
+    pub fn step(&self) -> u64 {
+        self.step
+    }
+    /// Forward-Euler maps of one cell computed so far, sleeping tiles left out.
+    pub fn updates(&self) -> u64 {
+        self.updates
+    }
+    /// The state of a cell.
+    pub fn state(&self, index: [usize; D]) -> S::State {
+        self.now.get(self.place(index))
+    }
+    /// The ground of a cell.
+    pub fn ground(&self, index: [usize; D]) -> S::Ground {
+        self.grounds.get(self.place(index))
+    }
+    /// Ground and state of a cell.
+    pub fn cell(&self, index: [usize; D]) -> Cell<S::State, S::Ground> {
+        Cell { state: self.state(index), ground: self.ground(index) }
+    }
+    /// What the scheme watches in a cell.
+    pub fn watch(&self, index: [usize; D]) -> Watch<f64> {
+        self.scheme.watch(&self.cell(index))
+    }
+    /// A value of every cell, x fastest.
+    pub fn collect<T>(&self, value: impl Fn(&Cell<S::State, S::Ground>) -> T) -> Vec<T> {
+        (0..self.grid.count()).map(|number| value(&self.cell(self.grid.index(number)))).collect()
+    }
+    /// Volume that has left by each of [`EXITS`] since the start.
+    pub fn out(&self) -> [f64; 5] {
+        self.out.map(|sum| sum.value() * self.grid.measure())
+    }
+
+    /// Every cell rests by the scheme's own proof and the last step changed nothing: nothing ever will.
+    pub fn at_rest(&self) -> bool {
+        self.step > 0 && self.quiet.iter().all(|quiet| *quiet)
+    }
+    /// Largest speed along the bed.
+    pub fn speed(&self) -> f64 {
+        self.tallies.iter().fold(0.0, |most, tally| tally.speed.max(most))
+    }
+    /// Cells with a momentum, and cells with a depth.
+    pub fn counts(&self) -> (usize, usize) {
+        self.tallies.iter().fold((0, 0), |(moving, wet), tally| (moving + tally.moving, wet + tally.wet))
+    }
+    /// Kinetic energy per density.
+    pub fn energy(&self) -> f64 {
+        self.tallies.iter().map(|tally| tally.energy).sum::<f64>() * self.grid.measure()
+    }
+    /// Sums over all cells, compensated and in fixed order.
+    pub fn totals(&self) -> Totals {
+        let (mut volume, mut film) = (Sum::default(), Sum::default());
+        for number in 0..self.grid.count() {
+            let index = self.grid.index(number);
+            let watch = self.watch(index);
+            volume.add(watch.volume);
+            film.add(watch.volume * watch.film);
+        }
+        let (moving, wet) = self.counts();
+        let measure = self.grid.measure();
+        Totals {
+            volume: volume.value() * measure,
+            film: film.value() * measure,
+            speed: self.speed(),
+            energy: self.energy(),
+            wet,
+            moving,
+        }
+    }
+
+    /// Rates and counts of the state as it stands (needed once, before the first step or after a restart).
+    fn survey(&mut self) {
+        for (tile, tally) in self.tiles.iter().zip(&mut self.tallies) {
+            *tally = Tally::NONE;
+            for j in tile.rows[0]..tile.rows[1] {
+                for i in tile.columns[0]..tile.columns[1] {
+                    let place = self.layout.place(i as isize, j as isize);
+                    let cell = Cell { state: self.now.get(place), ground: self.grounds.get(place) };
+                    if self.scheme.outside(&cell.ground) {
+                        continue;
+                    }
+                    let watch = self.scheme.watch(&cell);
+                    tally.rate = tally.rate.max(self.scheme.rate(&cell, &self.spacing));
+                    tally.speed = tally.speed.max(watch.speed);
+                    tally.energy += watch.energy;
+                    tally.wet += usize::from(watch.volume > 0.0);
+                    tally.moving += usize::from(watch.speed > 0.0);
+                }
+            }
+        }
+    }
+
+    /// The step that the Courant condition or the case asks for; infinite where nothing could move.
+    pub fn wanted_step(&self) -> f64 {
+        match self.step_size {
+            StepSize::Fixed(dt) => dt,
+            StepSize::Courant(courant) => {
+                courant / self.tallies.iter().fold(0.0, |most: f64, tally| tally.rate.max(most))
+            }
+        }
+    }
+
+    /// One step, not beyond time `until`; returns dt.
+    pub fn advance(&mut self, until: f64) -> Result<f64, Failure> {
+        let wanted = self.wanted_step();
+        let left = until - self.time;
+        let (dt, time) = if wanted >= left { (left, until) } else { (wanted, self.time + wanted) };
+        if !(time > self.time) || !dt.is_finite() {
+            return Err(Failure::Collapsed { step: self.step, time: self.time, dt });
+        }
+        self.wake();
+        let mut out = [0.0; 5];
+        for (stage, &keep) in self.stages.iter().enumerate() {
+            let last = stage + 1 == self.stages.len();
+            boundary::fill(&mut self.now, &self.grid, &self.layout, |axis, s| self.scheme.mirror(axis, &s));
+            let sweep = Sweep {
+                scheme: &self.scheme,
+                layout: self.layout,
+                spacing: self.spacing,
+                grounds: self.grounds.view(),
+                from: self.now.view(),
+                dt,
+                keep,
+                last,
+                time,
+            };
+            let maps = if last { self.maps.as_mut() } else { None };
+            sweep.run(&self.tiles, &self.awake, &mut self.next, maps, &mut self.found);
+            std::mem::swap(&mut self.now, &mut self.next);
+            out = out.map(|o| o * (1.0 - keep));
+            for (&number, found) in self.awake.iter().zip(&self.found) {
+                let tally = &mut self.tallies[number as usize];
+                let quiet = found.quiet && (stage == 0 || tally.quiet);
+                *tally = Tally { quiet, ..*found };
+                for (sum, part) in out.iter_mut().zip(found.out) {
+                    *sum += (1.0 - keep) * part;
+                }
+            }
+        }
+        self.time = time;
+        self.step += 1;
+        for (sum, part) in self.out.iter_mut().zip(out) {
+            sum.add(part);
+        }
+        let mut finite = true;
+        for &number in &self.awake {
+            let tile = &self.tiles[number as usize];
+            let cells = (tile.columns[1] - tile.columns[0]) * (tile.rows[1] - tile.rows[0]);
+            self.updates += (cells * self.stages.len()) as u64;
+            finite &= self.tallies[number as usize].finite;
+            self.quiet[number as usize] = self.tallies[number as usize].quiet;
+        }
+        if finite { Ok(dt) } else { Err(Failure::NotFinite { step: self.step, time: self.time }) }
+    }
+
+    /// Number the tiles that something can happen in.
+    fn wake(&mut self) {
+        self.awake.clear();
+        let (across, up) = (self.across, self.tiles.len() / self.across);
+        for y in 0..up {
+            for x in 0..across {
+                let loud = (y.saturating_sub(1)..(y + 2).min(up))
+                    .any(|v| (x.saturating_sub(1)..(x + 2).min(across)).any(|u| !self.quiet[v * across + u]));
+                if loud || self.wraps(x, y, across, up) {
+                    self.awake.push((y * across + x) as u32);
+                }
+            }
+        }
+    }
+
+    /// Tiles at a periodic end never sleep: their neighbours are at the other end.
+    fn wraps(&self, x: usize, y: usize, across: usize, up: usize) -> bool {
+        let periodic = |axis: usize| self.grid.boundary[axis][0] == crate::scheme::Boundary::Periodic;
+        let at_end = |place: usize, count: usize| place == 0 || place + 1 == count;
+        let all_quiet = self.quiet.iter().all(|quiet| *quiet);
+        !all_quiet && ((periodic(0) && at_end(x, across)) || (D > 1 && periodic(D - 1) && at_end(y, up)))
+    }
+
+    /// The numbers that a restart needs: time, step, updates, and the books.
+    pub fn clock(&self) -> Vec<f64> {
+        let mut numbers = vec![self.time, self.step as f64, self.updates as f64];
+        numbers.extend(self.out.iter().flat_map(|sum| sum.parts()));
+        numbers
+    }
+    /// The state arrays, padded, for a checkpoint.
+    pub fn arrays(&self) -> &Field {
+        &self.now
+    }
+    /// Take up a run from [`Simulation::clock`] and [`Simulation::arrays`]; false where the sizes do not fit.
+    pub fn restore(&mut self, clock: &[f64], arrays: Field) -> bool {
+        let fits = clock.len() == 3 + 2 * EXITS.len()
+            && arrays.parts.len() == self.now.parts.len()
+            && arrays.parts.iter().all(|part| part.len() == self.layout.len());
+        if fits {
+            self.time = clock[0];
+            self.step = clock[1] as u64;
+            self.updates = clock[2] as u64;
+            for (k, sum) in self.out.iter_mut().enumerate() {
+                *sum = Sum::from_parts([clock[3 + 2 * k], clock[4 + 2 * k]]);
+            }
+            self.now = arrays;
+            self.next = self.now.clone();
+            self.quiet.fill(false);
+            self.survey();
+        }
+        fits
+    }
+}
+
+/// The grid cut into tiles, row by row; how many lie side by side.
+fn cut(layout: &Layout, outside: impl Fn(isize, isize) -> bool) -> (Vec<Tile>, usize) {
+    let ends = |count: usize, size: usize| {
+        let tiles = count.div_ceil(size);
+        (0..tiles).map(move |k| [k * count / tiles, (k + 1) * count / tiles])
+    };
+    let across = ends(layout.columns, TILE[0]).count();
+    let mut tiles = Vec::new();
+    for rows in ends(layout.rows, TILE[1]) {
+        for columns in ends(layout.columns, TILE[0]) {
+            let range = |[from, to]: [usize; 2]| from as isize - 1..to as isize + 1;
+            let ends = columns[0] == 0
+                || columns[1] == layout.columns
+                || rows[0] == 0
+                || rows[1] == layout.rows;
+            let rim = ends
+                || range(rows).any(|j| range(columns).any(|i| outside(i, if layout.rows > 1 { j } else { 0 })));
+            tiles.push(Tile { columns, rows, rim });
+        }
+    }
+    (tiles, across)
+}
