@@ -12,7 +12,7 @@ use rayon::prelude::*;
 use std::marker::PhantomData;
 
 /// Largest extent of a tile along x and y. At least 4, the reach of a two-stage step.
-pub const TILE: [usize; 2] = [32, 16];
+pub const TILE: [usize; 2] = [16, 8];
 
 /// The five ways out of the domain, as the ledger books them.
 pub const EXITS: [&str; 5] = ["left", "right", "bottom", "top", "nodata"];
