@@ -1,0 +1,3 @@
+//! The Savage-Hutter model.
+
+pub mod exact;
