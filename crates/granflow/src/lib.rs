@@ -1,3 +1,4 @@
 //! x
 
 pub mod raster;
+pub mod terrain;
