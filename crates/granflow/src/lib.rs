@@ -1,4 +1,5 @@
 //! x
 
 pub mod raster;
+pub mod release;
 pub mod terrain;

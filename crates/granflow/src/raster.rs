@@ -98,7 +98,8 @@ impl Raster {
     /// Smallest and largest value, `None` where all is nodata.
     pub fn range(&self) -> Option<(f64, f64)> {
         let valid = self.values.iter().filter(|value| !value.is_nan());
-        valid.fold(None, |range, &v| Some(range.map_or((v, v), |(lo, hi): (f64, f64)| (lo.min(v), hi.max(v)))))
+        valid
+            .fold(None, |range, &v| Some(range.map_or((v, v), |(lo, hi): (f64, f64)| (lo.min(v), hi.max(v)))))
     }
 
     /// Refuses a raster whose CRS contradicts that of `terrain`; `path` is where it was read from.
@@ -116,7 +117,8 @@ impl Raster {
     /// Degrees show in three ways: the CRS says so, or coordinates fit on a globe of 360 by 180 while the relief is
     /// more than ten times the extent, as metres over degrees are and no ground is.
     fn geographic(&self) -> bool {
-        let globe = self.west >= -360.0 && self.east() <= 360.0 && self.south >= -90.0 && self.north() <= 90.0;
+        let globe =
+            self.west >= -360.0 && self.east() <= 360.0 && self.south >= -90.0 && self.north() <= 90.0;
         let extent = self.cell * self.columns.max(self.rows) as f64;
         let steep = self.range().is_some_and(|(low, high)| high - low > 10.0 * extent);
         let code = self.crs.as_ref().and_then(|crs| crs.epsg).unwrap_or(0);
@@ -129,7 +131,9 @@ impl Raster {
         if self.geographic() {
             return Err(RasterError::geographic(path, &self));
         }
-        if let Some(metres) = self.crs.as_ref().and_then(Crs::metres_per_unit).filter(|m| (m - 1.0).abs() > 1e-9) {
+        if let Some(metres) =
+            self.crs.as_ref().and_then(Crs::metres_per_unit).filter(|m| (m - 1.0).abs() > 1e-9)
+        {
             return Err(RasterError::unit(path, metres, self.cell));
         }
         if self.range().is_none() {
@@ -165,7 +169,8 @@ pub(crate) mod tests {
 
     #[test]
     fn degrees_are_refused_with_the_command_that_reprojects() {
-        let degrees = Raster { west: 11.0, south: 47.0, cell: 1e-4, ..sampled(20, 20, |x, y| 1500.0 + x + 2.0 * y) };
+        let degrees =
+            Raster { west: 11.0, south: 47.0, cell: 1e-4, ..sampled(20, 20, |x, y| 1500.0 + x + 2.0 * y) };
         let message = refused(degrees.clone());
         assert!(message.contains("gdalwarp -t_srs EPSG:32632 -tr 9.2 9.2 -r bilinear dem.tif"), "{message}");
         let south = Raster { south: -33.0, west: -70.5, ..degrees.clone() };
@@ -190,7 +195,10 @@ pub(crate) mod tests {
         let path = Path::new("dem.asc");
         assert_eq!(agreed(path, None, Some(&a)).unwrap(), Some(a.clone()));
         let message = agreed(path, Some(b.clone()), Some(&a)).unwrap_err().to_string();
-        assert!(message.contains("EPSG:32632 against EPSG:31287") && message.contains("gdalwarp"), "{message}");
+        assert!(
+            message.contains("EPSG:32632 against EPSG:31287") && message.contains("gdalwarp"),
+            "{message}"
+        );
         let terrain = Raster { crs: Some(a), ..sampled(2, 2, |_, _| 0.0) };
         let thickness = Raster { crs: Some(b), ..terrain.clone() };
         let message = thickness.same_system(Path::new("h.tif"), &terrain).unwrap_err().to_string();

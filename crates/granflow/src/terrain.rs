@@ -142,7 +142,8 @@ mod tests {
         for length in [2.0, 4.0, 6.0] {
             let bed = ragged(rough);
             let (columns, rows) = (bed.columns, bed.rows);
-            let values = (0..rows * columns).map(|k| bed.at(columns - 1 - k % columns, k / columns)).collect();
+            let values =
+                (0..rows * columns).map(|k| bed.at(columns - 1 - k % columns, k / columns)).collect();
             let flipped = (0..rows * columns).map(|k| bed.at(k % columns, rows - 1 - k / columns)).collect();
             let east = Terrain::new(bed.with_values(values), Curvature::Length(length));
             let north = Terrain::new(bed.with_values(flipped), Curvature::Length(length));
@@ -150,9 +151,17 @@ mod tests {
             for k in 0..rows * columns {
                 let ([x, y], [xx, xy, yy]) = (terrain.gradient[k], terrain.hessian[k]);
                 let mirrored = k / columns * columns + columns - 1 - k % columns;
-                assert_eq!((east.gradient[mirrored], east.hessian[mirrored]), ([-x, y], [xx, -xy, yy]), "{k}");
+                assert_eq!(
+                    (east.gradient[mirrored], east.hessian[mirrored]),
+                    ([-x, y], [xx, -xy, yy]),
+                    "{k}"
+                );
                 let mirrored = (rows - 1 - k / columns) * columns + k % columns;
-                assert_eq!((north.gradient[mirrored], north.hessian[mirrored]), ([x, -y], [xx, -xy, yy]), "{k}");
+                assert_eq!(
+                    (north.gradient[mirrored], north.hessian[mirrored]),
+                    ([x, -y], [xx, -xy, yy]),
+                    "{k}"
+                );
             }
         }
     }
@@ -184,7 +193,15 @@ mod tests {
 
     #[test]
     fn steepness_counts_the_cells_above_a_limit() {
-        let bed = sampled(20, 8, |x, y| if y > 7.0 { f64::NAN } else if x < 10.0 { 0.0 } else { 2.0 * (x - 10.0) });
+        let bed = sampled(20, 8, |x, y| {
+            if y > 7.0 {
+                f64::NAN
+            } else if x < 10.0 {
+                0.0
+            } else {
+                2.0 * (x - 10.0)
+            }
+        });
         let steep = Terrain::new(bed, Curvature::Off).steepness(60f64.to_radians());
         assert_eq!((steep.cells, steep.steeper), (140, 63));
         assert!((steep.max_slope.tan() - 2.0).abs() < 1e-9 && (steep.share - 0.45).abs() < 1e-15);

@@ -9,7 +9,16 @@ const NODATA: f64 = -9999.0;
 
 /// The header's keys in lower case.
 const KEYS: [&str; 10] = [
-    "ncols", "nrows", "xllcorner", "xllcenter", "yllcorner", "yllcenter", "cellsize", "dx", "dy", "nodata_value",
+    "ncols",
+    "nrows",
+    "xllcorner",
+    "xllcenter",
+    "yllcorner",
+    "yllcenter",
+    "cellsize",
+    "dx",
+    "dy",
+    "nodata_value",
 ];
 
 pub(super) fn read(path: &Path, given: Option<&Crs>) -> Result<Raster, RasterError> {
@@ -112,7 +121,9 @@ impl Header {
             "yllcenter" => self.south = Some((number()?, true)),
             "cellsize" | "dx" => self.cell = Some(number()?),
             "dy" => self.height = Some(number()?),
-            "nodata_value" if found.parse::<f64>().is_ok_and(|v| !v.is_finite()) => self.nodata = Some(NODATA),
+            "nodata_value" if found.parse::<f64>().is_ok_and(|v| !v.is_finite()) => {
+                self.nodata = Some(NODATA)
+            }
             "nodata_value" => self.nodata = Some(number()?),
             _ => {
                 let problem = format!("unknown key `{key}`; allowed are {}", KEYS.join(", "));
@@ -168,36 +179,57 @@ mod tests {
 
     #[test]
     fn odd_but_clear_files_are_read() {
-        let raster =
-            read("\u{feff}NROWS 2\r\nNCOLS 2\r\nXLLCENTER 1e1\r\nYllCenter 20\r\nCELLSIZE 2.\r\n1\r\n2 3 4\r\n\r\n");
+        let raster = read(
+            "\u{feff}NROWS 2\r\nNCOLS 2\r\nXLLCENTER 1e1\r\nYllCenter 20\r\nCELLSIZE 2.\r\n1\r\n2 3 4\r\n\r\n",
+        );
         let raster = raster.unwrap();
         assert_eq!((raster.west, raster.south, raster.values), (9.0, 19.0, vec![3.0, 4.0, 1.0, 2.0]));
-        let nan = read(&HEADER.replace("-1", "nan").replace("nrows 2", "nrows 1").replace("cellsize", "dx")).err();
+        let nan =
+            read(&HEADER.replace("-1", "nan").replace("nrows 2", "nrows 1").replace("cellsize", "dx")).err();
         assert!(nan.is_some_and(|e| e.to_string().contains("0 values follow")));
-        let raster = read(&format!("{}nan 1 -9999", HEADER.replace("-1", "nan").replace("nrows 2", "nrows 1")));
+        let raster =
+            read(&format!("{}nan 1 -9999", HEADER.replace("-1", "nan").replace("nrows 2", "nrows 1")));
         assert_eq!(raster.unwrap().values.iter().filter(|v| v.is_nan()).count(), 2);
     }
 
     #[test]
     fn refusals_name_line_key_and_cure() {
         let body = "1 2 3 4 5 6";
-        let without = |key: &str| HEADER.lines().filter(|l| !l.starts_with(key)).fold(String::new(), |a, l| a + l + "\n");
-        assert!(refused(&format!("{}{body}", without("ncols"))).contains("line 5: the header ends without ncols"));
+        let without = |key: &str| {
+            HEADER.lines().filter(|l| !l.starts_with(key)).fold(String::new(), |a, l| a + l + "\n")
+        };
+        assert!(
+            refused(&format!("{}{body}", without("ncols"))).contains("line 5: the header ends without ncols")
+        );
         assert!(refused(&format!("{}{body}", without("xll"))).contains("xllcorner or xllcenter"));
         let odd = HEADER.replace("nrows 2", "nrows two");
-        assert!(refused(&format!("{odd}{body}")).contains("line 2: nrows is a whole number above 0, found two"));
-        assert!(refused(&format!("{HEADER}skew 2\n{body}")).contains("line 7: unknown key `skew`; allowed are ncols"));
+        assert!(
+            refused(&format!("{odd}{body}")).contains("line 2: nrows is a whole number above 0, found two")
+        );
+        assert!(
+            refused(&format!("{HEADER}skew 2\n{body}"))
+                .contains("line 7: unknown key `skew`; allowed are ncols")
+        );
         let count = refused(&format!("{HEADER}1 2 3\n4 5"));
-        assert!(count.contains("2 rows of 3 values = 6, but 5 values") && count.contains("line 8"), "{count}");
+        assert!(
+            count.contains("2 rows of 3 values = 6, but 5 values") && count.contains("line 8"),
+            "{count}"
+        );
         assert!(refused(&format!("{HEADER}1 2 3 4 5 6 7")).contains("but 7 values"));
-        assert!(refused(&format!("{HEADER}1,5 2 3 4 5 6")).contains("line 7: `1,5` is not a number; decimals"));
+        assert!(
+            refused(&format!("{HEADER}1,5 2 3 4 5 6")).contains("line 7: `1,5` is not a number; decimals")
+        );
         assert!(refused(&format!("{HEADER}1 2 3\n4 x 6")).contains("line 8: `x` is not a number"));
         let tall = HEADER.replace("cellsize 2", "dx 2\ndy 3");
         assert!(refused(&format!("{tall}{body}")).contains("gdalwarp -tr 2 2 -r bilinear dem.asc"));
-        assert!(refused(&format!("{}{body}", HEADER.replace("size 2", "size -2"))).contains("above 0, found -2"));
+        assert!(
+            refused(&format!("{}{body}", HEADER.replace("size 2", "size -2"))).contains("above 0, found -2")
+        );
         assert!(refused("hello world").contains("neither a GeoTIFF nor an ESRI ASCII grid"));
         assert!(refused("1 2 3").contains("it begins with `1`"));
-        assert!(refused("ncols 3 nrows 2\n1 2").contains("line 1: a header line holds one key and one value"));
+        assert!(
+            refused("ncols 3 nrows 2\n1 2").contains("line 1: a header line holds one key and one value")
+        );
         assert!(refused("").contains("gdal_translate"));
     }
 
@@ -207,7 +239,8 @@ mod tests {
         let path = folder.path().join("dem.asc");
         std::fs::write(&path, format!("{HEADER}1 2 3\n4 5 6\n")).unwrap();
         assert_eq!(Raster::read(&path).unwrap().crs, None);
-        std::fs::write(path.with_extension("prj"), "PROJCS[\"Here\",GEOGCS[\"G\"],UNIT[\"Meter\",1.0]]").unwrap();
+        std::fs::write(path.with_extension("prj"), "PROJCS[\"Here\",GEOGCS[\"G\"],UNIT[\"Meter\",1.0]]")
+            .unwrap();
         assert_eq!(Raster::read(&path).unwrap().crs.map(|crs| crs.to_string()), Some("Here".into()));
         std::fs::write(path.with_extension("prj"), "Projection UTM").unwrap();
         let message = Raster::read(&path).unwrap_err().to_string();

@@ -25,8 +25,8 @@ pub struct CrsError {
 
 /// Geographic systems in wide use; others are known by their WKT, by the GeoTIFF model type or by their coordinates.
 const GEOGRAPHIC: [u32; 22] = [
-    4326, 4258, 4267, 4269, 4275, 4277, 4283, 4289, 4312, 4314, 4149, 4150, 4171, 4230, 4231, 4612, 4674, 4937,
-    4979, 6318, 6668, 7844,
+    4326, 4258, 4267, 4269, 4275, 4277, 4283, 4289, 4312, 4314, 4149, 4150, 4171, 4230, 4231, 4612, 4674,
+    4937, 4979, 6318, 6668, 7844,
 ];
 
 impl Crs {
@@ -136,7 +136,8 @@ mod tests {
         let crs = Crs::parse(LAMBERT).unwrap();
         assert_eq!((crs.epsg, crs.metres_per_unit(), crs.is_geographic()), (None, Some(1.0), false));
         assert_eq!(crs.to_string(), "MGI_Austria_Lambert");
-        let coded = LAMBERT.replace("UNIT[\"Meter\",1.0]]", "UNIT[\"ft\",0.3048],AUTHORITY[\"EPSG\",\"31287\"]]");
+        let coded =
+            LAMBERT.replace("UNIT[\"Meter\",1.0]]", "UNIT[\"ft\",0.3048],AUTHORITY[\"EPSG\",\"31287\"]]");
         let coded = Crs::parse(&coded).unwrap();
         assert_eq!((coded.epsg, coded.metres_per_unit()), (Some(31287), Some(0.3048)));
         assert!(Crs::parse(r#"GEOGCRS["WGS 84",ID["EPSG",4326]]"#).unwrap().is_geographic());

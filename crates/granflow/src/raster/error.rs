@@ -183,7 +183,13 @@ impl RasterError {
         RasterError::Unit { path: path.into(), metres, cell: two_digits(cell * metres) }
     }
 
-    pub(super) fn mismatch(path: &Path, own: &Crs, wanted: &Crs, whose: &'static str, proof: String) -> RasterError {
+    pub(super) fn mismatch(
+        path: &Path,
+        own: &Crs,
+        wanted: &Crs,
+        whose: &'static str,
+        proof: String,
+    ) -> RasterError {
         let target = wanted.epsg.map_or("TERRAIN.prj".to_string(), |code| format!("EPSG:{code}"));
         let (own, wanted) = (own.to_string(), wanted.to_string());
         RasterError::CrsMismatch { path: path.into(), own, whose, wanted, proof, target }

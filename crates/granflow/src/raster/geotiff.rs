@@ -28,12 +28,21 @@ pub(super) fn read(path: &Path, given: Option<&Crs>) -> Result<Raster, RasterErr
     })?;
     if file.band_count() != 1 {
         let cure = format!("gdal_translate -b 1 {0} band.tif", path.display());
-        return Err(error(&format!("{} bands, elevation is one; choose it with\n  {cure}", file.band_count())));
+        return Err(error(&format!(
+            "{} bands, elevation is one; choose it with\n  {cure}",
+            file.band_count()
+        )));
     }
     let at = file.transform().ok_or_else(|| error(&unplaced(path)))?;
     if at.skew_x != 0.0 || at.skew_y != 0.0 || at.pixel_width <= 0.0 || at.pixel_height == 0.0 {
-        let cure = format!("gdalwarp -r bilinear {0} {1}_straight.tif", path.display(), path.with_extension("").display());
-        return Err(error(&format!("its rows do not run from west to east (rotated or mirrored); straighten it with\n  {cure}")));
+        let cure = format!(
+            "gdalwarp -r bilinear {0} {1}_straight.tif",
+            path.display(),
+            path.with_extension("").display()
+        );
+        return Err(error(&format!(
+            "its rows do not run from west to east (rotated or mirrored); straighten it with\n  {cure}"
+        )));
     }
     let (cell, height) = (at.pixel_width, at.pixel_height.abs());
     let (columns, rows) = (file.width() as usize, file.height() as usize);
@@ -70,7 +79,8 @@ fn unplaced(path: &Path) -> String {
 fn system(path: &Path, file: &GeoTiffFile, given: Option<&Crs>) -> Result<Option<Crs>, RasterError> {
     let keys = file.geokeys();
     let citation = [PROJECTED_CITATION, CITATION].into_iter().filter_map(|key| keys.get_ascii(key));
-    let embedded = citation.filter_map(|text| text.split_once(EMBEDDED)).find_map(|(_, wkt)| Crs::parse(wkt).ok());
+    let embedded =
+        citation.filter_map(|text| text.split_once(EMBEDDED)).find_map(|(_, wkt)| Crs::parse(wkt).ok());
     let coded = file.epsg().map(|code| Crs { epsg: Some(code), wkt: None });
     let foot = match keys.get_short(LINEAR_UNIT) {
         Some(9002) => Some(0.3048),
@@ -101,7 +111,9 @@ fn samples(path: &Path, file: &GeoTiffFile) -> Result<Vec<f64>, RasterError> {
     let metadata = ifd.tag(METADATA_TAG).and_then(|tag| tag.value.as_str()).unwrap_or_default();
     if metadata.contains("role=\"scale\"") || metadata.contains("role=\"offset\"") {
         let cure = format!("gdal_translate -unscale -ot Float32 {0} metres.tif", path.display());
-        return Err(error(format!("its values are stored with a scale and an offset; apply them with\n  {cure}")));
+        return Err(error(format!(
+            "its values are stored with a scale and an offset; apply them with\n  {cure}"
+        )));
     }
     let layout = ifd.raster_layout().map_err(|e| error(e.to_string()))?;
     macro_rules! read {
@@ -148,7 +160,8 @@ impl Raster {
             if value.is_nan() { NODATA } else { value as f32 }
         };
         let values = (0..self.values.len()).map(value).collect();
-        let image = Array2::from_shape_vec((self.rows, self.columns), values).map_err(|e| error(e.to_string()))?;
+        let image =
+            Array2::from_shape_vec((self.rows, self.columns), values).map_err(|e| error(e.to_string()))?;
         let [columns, rows] = [self.columns, self.rows].map(u32::try_from);
         let (Ok(columns), Ok(rows)) = (columns, rows) else {
             return Err(error(format!("{} by {} cells are more than a TIFF holds", self.columns, self.rows)));
@@ -238,7 +251,8 @@ mod tests {
             assert_eq!(back.crs.is_some(), raster.crs.is_some());
         }
         assert_eq!(Raster::read(&path).unwrap().crs.unwrap().to_string(), "H_he _ Lambert");
-        let nowhere = hill().write_geotiff(&folder.path().join("no/such/folder.tif")).unwrap_err().to_string();
+        let nowhere =
+            hill().write_geotiff(&folder.path().join("no/such/folder.tif")).unwrap_err().to_string();
         assert!(nowhere.contains("folder.tif cannot be written"), "{nowhere}");
     }
 

@@ -24,7 +24,8 @@ impl Raster {
         let (s, t) = (u - 0.5 - left, v - 0.5 - below);
         let corners = [(0.0, 0.0), (1.0, 0.0), (0.0, 1.0), (1.0, 1.0)].map(|(i, j)| {
             let (column, row) = (left + i, below + j);
-            let exists = column >= 0.0 && row >= 0.0 && column < self.columns as f64 && row < self.rows as f64;
+            let exists =
+                column >= 0.0 && row >= 0.0 && column < self.columns as f64 && row < self.rows as f64;
             let value = if exists { self.at(column as usize, row as usize) } else { f64::NAN };
             let weight = (1.0 - (s - i).abs()) * (1.0 - (t - j).abs());
             if value.is_nan() { (0.0, 0.0) } else { (weight, weight * value) }
@@ -60,7 +61,8 @@ impl Raster {
         } else if target.cell >= MEAN_FROM * self.cell {
             let (areas, sums) = self.overlap(&target);
             let half = 0.5 * target.cell * target.cell;
-            let mean = |(area, sum): (f64, f64)| if area < half * (1.0 - 1e-9) { f64::NAN } else { sum / area };
+            let mean =
+                |(area, sum): (f64, f64)| if area < half * (1.0 - 1e-9) { f64::NAN } else { sum / area };
             areas.into_iter().zip(sums).map(mean).collect()
         } else {
             let centres = (0..target.rows * target.columns).map(|k| (k % target.columns, k / target.columns));

@@ -90,9 +90,14 @@ mod tests {
     #[test]
     fn quotes_brackets_and_nesting() {
         let node = Node::parse(r#"A [ "x ""y"" [z]" , 2.5, north, B("q",C[1]) ] "#).unwrap();
-        assert_eq!((node.text(0), node.number(1), node.text(2)), (Some(r#"x "y" [z]"#), Some(2.5), Some("north")));
+        assert_eq!(
+            (node.text(0), node.number(1), node.text(2)),
+            (Some(r#"x "y" [z]"#), Some(2.5), Some("north"))
+        );
         let child = node.children().next().unwrap();
-        assert!(child.is("B") && child.children().next().is_some_and(|c| c.is("C") && c.number(0) == Some(1.0)));
+        assert!(
+            child.is("B") && child.children().next().is_some_and(|c| c.is("C") && c.number(0) == Some(1.0))
+        );
         for broken in ["", "A", "A[", "A[\"x]", "A[1", "A[1]B", "[1]", "A[1,]x", "A[B[1]"] {
             assert_eq!(Node::parse(broken), None, "{broken}");
         }

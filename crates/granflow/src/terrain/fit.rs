@@ -29,7 +29,8 @@ pub(super) fn derivatives(bed: &Raster, m: usize) -> Vec<Fit> {
             if bed.values[row * columns + column].is_nan() {
                 continue;
             }
-            let regular = (!sums.is_empty() && whole(column, columns)).then(|| full.fit(bed, &sums, column, row));
+            let regular =
+                (!sums.is_empty() && whole(column, columns)).then(|| full.fit(bed, &sums, column, row));
             *fit = match regular {
                 Some(fit) if fit.is_number() => fit,
                 _ => ragged(bed, column, row, m),
@@ -116,7 +117,10 @@ fn ragged(bed: &Raster, column: usize, row: usize, m: usize) -> Fit {
     let cell = bed.cell;
     if let Some(a) = window.solve::<6>(m).or_else(|| window.solve::<6>(m + 1)) {
         let area = cell * cell;
-        return Fit { gradient: [a[1] / cell, a[2] / cell], hessian: [a[3] / area, a[4] / area, a[5] / area] };
+        return Fit {
+            gradient: [a[1] / cell, a[2] / cell],
+            hessian: [a[3] / area, a[4] / area, a[5] / area],
+        };
     }
     if let Some(a) = window.solve::<3>(m) {
         return Fit { gradient: [a[1] / cell, a[2] / cell], hessian: [0.0; 3] };
