@@ -12,7 +12,10 @@ pub use crs::{Crs, CrsError};
 pub use error::RasterError;
 
 use std::io::Read;
-use std::path::Path;
+use std::path::{Path, PathBuf};
+
+/// Values that stand for nodata wherever they occur.
+const UNDECLARED: [f64; 4] = [-9999.0, -32768.0, -32767.0, -99999.0];
 
 /// A grid of square cells, north up on disk and south first in memory.
 #[derive(Debug, Clone, PartialEq)]
@@ -110,7 +113,7 @@ impl Raster {
         let (Some(own), Some(wanted)) = (&self.crs, &terrain.crs) else { return Ok(()) };
         match own.contradiction(wanted) {
             None => Ok(()),
-            Some(proof) => Err(RasterError::mismatch(path, own, wanted, "the terrain", proof)),
+            Some(proof) => Err(RasterError::mismatch(path, own, wanted, proof)),
         }
     }
 
@@ -136,18 +139,28 @@ impl Raster {
         {
             return Err(RasterError::unit(path, metres, self.cell));
         }
-        if self.range().is_none() {
+        let Some((low, high)) = self.range() else {
             return Err(RasterError::Empty { path: path.into(), cells: self.values.len() });
+        };
+        if UNDECLARED.contains(&low) || low < -1e30 || high > 1e30 {
+            let found = if high > 1e30 { high } else { low };
+            return Err(RasterError::Undeclared { path: path.into(), found });
         }
         Ok(self)
     }
+}
+
+/// The file beside `path` that has another extension, in lower or upper case.
+pub(crate) fn beside(path: &Path, extension: &str) -> PathBuf {
+    let [lower, upper] = [extension.to_string(), extension.to_uppercase()].map(|e| path.with_extension(e));
+    if !lower.exists() && upper.exists() { upper } else { lower }
 }
 
 /// The CRS of a file and the one that a case gives, where they agree.
 fn agreed(path: &Path, own: Option<Crs>, given: Option<&Crs>) -> Result<Option<Crs>, RasterError> {
     let (Some(own), Some(given)) = (&own, given) else { return Ok(own.or(given.cloned())) };
     match own.contradiction(given) {
-        Some(proof) => Err(RasterError::mismatch(path, own, given, "the case", proof)),
+        Some(proof) => Err(RasterError::mismatch(path, own, given, proof)),
         None => Ok(Some(Crs { epsg: own.epsg.or(given.epsg), wkt: own.wkt.clone().or(given.wkt.clone()) })),
     }
 }
@@ -184,6 +197,8 @@ pub(crate) mod tests {
     #[test]
     fn empty_rasters_and_feet_are_refused() {
         assert!(refused(sampled(3, 2, |_, _| f64::NAN)).contains("all 6 cells are nodata"));
+        let low = sampled(3, 2, |x, _| if x < 1.0 { -32768.0 } else { 900.0 });
+        assert!(refused(low).contains("gdal_edit.py -a_nodata -32768 dem.tif"));
         let feet = Crs::parse(r#"PROJCS["x",GEOGCS["y"],UNIT["foot",0.3048]]"#).unwrap();
         let message = refused(Raster { crs: Some(feet), ..sampled(3, 2, |_, _| 1.0) });
         assert!(message.contains("0.3048 m") && message.contains("gdalwarp"), "{message}");

@@ -1,7 +1,7 @@
 //! ESRI ASCII grids: `ncols`, `nrows`, `xllcorner` or `xllcenter`, `yllcorner` or `yllcenter`, `cellsize`,
 //! `NODATA_value` (any case, any order), then the values from the north-west, row by row, lines of any length.
 
-use super::{Crs, Raster, RasterError, agreed};
+use super::{Crs, Raster, RasterError, agreed, beside};
 use std::path::Path;
 
 /// The value that means nodata where the header names none.
@@ -24,7 +24,7 @@ const KEYS: [&str; 10] = [
 pub(super) fn read(path: &Path, given: Option<&Crs>) -> Result<Raster, RasterError> {
     let bytes = std::fs::read(path).map_err(|source| RasterError::Io { path: path.into(), source })?;
     let raster = parse(path, &bytes)?;
-    let prj = path.with_extension("prj");
+    let prj = beside(path, "prj");
     let own = match std::fs::read(&prj) {
         Err(_) => None,
         Ok(bytes) => match Crs::parse(&String::from_utf8_lossy(&bytes)) {

@@ -137,9 +137,21 @@ pub enum RasterError {
         /// Number of cells.
         cells: usize,
     },
+    /// A value that stands for nodata is not declared as nodata.
+    #[error(
+        "{path}: the value {found} stands for nodata but is not declared so; declare it with\n  \
+         gdal_edit.py -a_nodata {found} {path}\n(in an ASCII grid: NODATA_value {found})", path = path.display()
+    )]
+    Undeclared {
+        /// The file.
+        path: PathBuf,
+        /// The value.
+        found: f64,
+    },
     /// Two coordinate reference systems that should be one.
     #[error(
-        "{path} is in {own}, {whose} in {wanted} ({proof}); reproject with\n  \
+        "{path} is in {own}, the terrain of the case in {wanted} ({proof}); correct crs in the case, or \
+         reproject with\n  \
          gdalwarp -t_srs {target} {path} {stem}_reprojected.tif", path = path.display(), stem = stem(path)
     )]
     CrsMismatch {
@@ -147,8 +159,6 @@ pub enum RasterError {
         path: PathBuf,
         /// Its system.
         own: String,
-        /// Where the other system comes from.
-        whose: &'static str,
         /// The other system.
         wanted: String,
         /// What differs.
@@ -183,16 +193,10 @@ impl RasterError {
         RasterError::Unit { path: path.into(), metres, cell: two_digits(cell * metres) }
     }
 
-    pub(super) fn mismatch(
-        path: &Path,
-        own: &Crs,
-        wanted: &Crs,
-        whose: &'static str,
-        proof: String,
-    ) -> RasterError {
+    pub(super) fn mismatch(path: &Path, own: &Crs, wanted: &Crs, proof: String) -> RasterError {
         let target = wanted.epsg.map_or("TERRAIN.prj".to_string(), |code| format!("EPSG:{code}"));
         let (own, wanted) = (own.to_string(), wanted.to_string());
-        RasterError::CrsMismatch { path: path.into(), own, whose, wanted, proof, target }
+        RasterError::CrsMismatch { path: path.into(), own, wanted, proof, target }
     }
 }
 

@@ -134,7 +134,10 @@ fn samples(path: &Path, file: &GeoTiffFile) -> Result<Vec<f64>, RasterError> {
         2, 8 => i8; 2, 16 => i16; 2, 32 => i32; 2, 64 => i64;
         3, 32 => f32; 3, 64 => f64;
     };
-    let mut values = values.map_err(|e| error(format!("the values cannot be read: {e}")))?;
+    let mut values = values.map_err(|e| {
+        let cure = format!("gdal_translate -co COMPRESS=DEFLATE {} plain.tif", path.display());
+        error(format!("the values cannot be read: {e}; if other programs can, convert it with\n  {cure}"))
+    })?;
     let nodata: Option<f64> = file.nodata().and_then(|text| text.trim_matches(['\0', ' ']).parse().ok());
     for value in &mut values {
         let missing = nodata.is_some_and(|nodata| (*value - nodata).abs() <= 1e-7 * nodata.abs());
@@ -198,7 +201,7 @@ fn with_system(builder: GeoTiffBuilder, crs: Option<&Crs>) -> Result<GeoTiffBuil
             };
             let definition = format!("{EMBEDDED}{}", plain(wkt.as_deref().unwrap_or_default()));
             Ok(builder
-                .model_type(ModelType::Projected)
+                .model_type(ModelType::Unknown(USER_DEFINED))
                 .geokey(CITATION, GeoKeyValue::Ascii(plain(&crs.to_string())))
                 .geokey(PROJECTED_SYSTEM, GeoKeyValue::Short(USER_DEFINED))
                 .geokey(PROJECTED_CITATION, GeoKeyValue::Ascii(definition)))

@@ -1,6 +1,7 @@
 //! Values between cell centres and on other grids.
 
 use super::Raster;
+use rayon::prelude::*;
 
 /// From this ratio of new to old cell size on, a new cell takes the mean over its area.
 const MEAN_FROM: f64 = 1.5;
@@ -65,8 +66,12 @@ impl Raster {
                 |(area, sum): (f64, f64)| if area < half * (1.0 - 1e-9) { f64::NAN } else { sum / area };
             areas.into_iter().zip(sums).map(mean).collect()
         } else {
-            let centres = (0..target.rows * target.columns).map(|k| (k % target.columns, k / target.columns));
-            centres.map(|(column, row)| self.sample(target.x(column), target.y(row))).collect()
+            let centre = |k: usize| (target.x(k % target.columns), target.y(k / target.columns));
+            let value = |k: usize| {
+                let (x, y) = centre(k);
+                self.sample(x, y)
+            };
+            (0..target.rows * target.columns).into_par_iter().map(value).collect()
         };
         target
     }

@@ -1,7 +1,7 @@
 //! Polygons with attributes from shapefiles and GeoJSON.
 
 use super::ReleaseError;
-use crate::raster::Crs;
+use crate::raster::{Crs, beside};
 use geo::{Area, Contains, Geometry, InteriorPoint, LineString, Polygon};
 use geojson::{GeoJson, JsonObject};
 use shapefile::dbase::{self, FieldValue};
@@ -43,12 +43,14 @@ fn no_polygon(path: &Path, feature: usize, found: &str) -> ReleaseError {
 
 fn shapefile(path: &Path) -> Result<Layer, ReleaseError> {
     let shapes = ShapeReader::from_path(path).and_then(ShapeReader::read).map_err(|e| unreadable(path, e))?;
-    let table = path.with_extension("dbf");
-    let mut records = match table.exists() {
+    let table = beside(path, "dbf");
+    let records = match table.exists() {
         true => attributes(&table).map_err(|e| unreadable(&table, e))?,
-        false => Vec::new(),
+        false => vec![Vec::new(); shapes.len()],
     };
-    records.resize_with(shapes.len(), Vec::new);
+    if records.len() != shapes.len() {
+        return Err(unreadable(&table, format!("{} records for {} shapes", records.len(), shapes.len())));
+    }
     let mut features = Vec::with_capacity(shapes.len());
     for ((shape, attributes), number) in shapes.into_iter().zip(records).zip(1..) {
         let kind = shape.shapetype().to_string();
@@ -67,7 +69,7 @@ fn shapefile(path: &Path) -> Result<Layer, ReleaseError> {
         };
         features.push(Feature { polygons: nested(rings), attributes });
     }
-    let crs = match std::fs::read(path.with_extension("prj")) {
+    let crs = match std::fs::read(beside(path, "prj")) {
         Ok(bytes) => Crs::parse(&String::from_utf8_lossy(&bytes)).ok(),
         Err(_) => None,
     };
