@@ -117,9 +117,9 @@ pub enum ReleaseError {
         /// Beyond the edge or on nodata.
         place: &'static str,
         /// Bounding box of the release: west, south, east, north \[m\].
-        release: [f64; 4],
+        release: Box<[f64; 4]>,
         /// Bounding box of the terrain: west, south, east, north \[m\].
-        terrain: [f64; 4],
+        terrain: Box<[f64; 4]>,
         /// What probably helps.
         cure: String,
     },
@@ -191,6 +191,8 @@ impl ReleaseError {
         } else {
             "beyond the terrain's edge or on cells without a value"
         };
+        let round = |bounds: [f64; 4]| Box::new(bounds.map(|at| (at * 100.0).round() / 100.0));
+        let (release, terrain) = (round(release), round(terrain));
         let share = if lost > 1.0 - 1e-9 { "all".to_string() } else { format!("{:.2} %", 100.0 * lost) };
         ReleaseError::Outside { path: path.into(), share, place, release, terrain, cure }
     }

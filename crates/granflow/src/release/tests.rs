@@ -43,7 +43,7 @@ fn geojson_in_its_forms_with_holes_and_partial_cells() {
     let rings = [ring(1.0, 1.0, 5.5, 5.0), ring(2.0, 2.0, 3.0, 3.25)];
     let bare = format!(r#"{{"type":"MultiPolygon","coordinates":[[{}]]}}"#, rings.join(","));
     let single = feature(&rings, "null");
-    let several = collection(&[single.clone()], "");
+    let several = collection(std::slice::from_ref(&single), "");
     for json in [&bare, &single, &several] {
         let height = released(json, &Thickness::Value(0.5), &ground()).unwrap();
         assert!((height.iter().sum::<f64>() - 0.5 * (18.0 - 1.25)).abs() < 1e-12);

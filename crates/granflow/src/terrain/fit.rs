@@ -167,7 +167,7 @@ impl Window<'_> {
                 let basis = [1.0, x, y, 0.5 * x * x, x * y, 0.5 * y * y];
                 for k in 0..N {
                     part[k] = rise * basis[k];
-                    for l in 0..N {
+                    for l in k..N {
                         matrix[k][l] += basis[k] * basis[l];
                     }
                 }
@@ -187,7 +187,7 @@ fn mirrored(u: isize, v: isize) -> [Option<(isize, isize)>; 4] {
     cells.map(|(exists, cell)| exists.then_some(cell))
 }
 
-/// Solves a symmetric positive definite system, `None` where a pivot is below [`DEGENERATE`].
+/// Solves a symmetric positive definite system given by its upper triangle, `None` where a pivot is below [`DEGENERATE`].
 fn eliminate<const N: usize>(mut matrix: [[f64; N]; N], mut right: [f64; N]) -> Option<[f64; N]> {
     let diagonal: [f64; N] = std::array::from_fn(|k| matrix[k][k]);
     for k in 0..N {
@@ -196,8 +196,8 @@ fn eliminate<const N: usize>(mut matrix: [[f64; N]; N], mut right: [f64; N]) -> 
         }
         let pivot = matrix[k];
         for row in k + 1..N {
-            let factor = matrix[row][k] / pivot[k];
-            for (entry, above) in matrix[row].iter_mut().zip(pivot).skip(k) {
+            let factor = pivot[row] / pivot[k];
+            for (entry, above) in matrix[row].iter_mut().zip(pivot).skip(row) {
                 *entry -= factor * above;
             }
             right[row] -= factor * right[k];
