@@ -1,0 +1,217 @@
+//! What can be wrong with a raster file, each with its cure.
+
+use super::{Crs, Raster};
+use std::path::{Path, PathBuf};
+use thiserror::Error;
+
+/// Why a raster was not read or written.
+#[derive(Debug, Error)]
+pub enum RasterError {
+    /// The file could not be opened or read.
+    #[error("{path}: {source}", path = path.display())]
+    Io {
+        /// The file.
+        path: PathBuf,
+        /// What the system said.
+        source: std::io::Error,
+    },
+    /// The file could not be written.
+    #[error("{path} cannot be written: {reason}", path = path.display())]
+    Write {
+        /// The file.
+        path: PathBuf,
+        /// What the system or the encoder said.
+        reason: String,
+    },
+    /// The content is neither GeoTIFF nor ESRI ASCII.
+    #[error(
+        "{path} is neither a GeoTIFF nor an ESRI ASCII grid ({found}); convert it with\n  \
+         gdal_translate {path} {stem}.tif", path = path.display(), stem = stem(path)
+    )]
+    Format {
+        /// The file.
+        path: PathBuf,
+        /// How the content begins.
+        found: String,
+    },
+    /// The header of an ASCII grid is incomplete or holds something else.
+    #[error("{path}, line {line}: {problem}", path = path.display())]
+    Header {
+        /// The file.
+        path: PathBuf,
+        /// Line number, from 1.
+        line: usize,
+        /// The key, what was found and what is allowed.
+        problem: String,
+    },
+    /// A value of an ASCII grid is no number.
+    #[error(
+        "{path}, line {line}: `{found}` is not a number{}", hint(found), path = path.display()
+    )]
+    Value {
+        /// The file.
+        path: PathBuf,
+        /// Line number, from 1.
+        line: usize,
+        /// The text in place of a number.
+        found: String,
+    },
+    /// An ASCII grid holds more or fewer values than its header says.
+    #[error(
+        "{path}: the header says {rows} rows of {columns} values = {expected}, but {found} values follow \
+         (the last on line {line}); correct ncols and nrows, or fetch the file again if it was cut off",
+        expected = rows * columns, path = path.display()
+    )]
+    Count {
+        /// The file.
+        path: PathBuf,
+        /// `nrows`.
+        rows: usize,
+        /// `ncols`.
+        columns: usize,
+        /// Number of values in the file.
+        found: usize,
+        /// Line of the last value, from 1.
+        line: usize,
+    },
+    /// The GeoTIFF is damaged or of a kind that is not understood.
+    #[error("{path}: {problem}", path = path.display())]
+    GeoTiff {
+        /// The file.
+        path: PathBuf,
+        /// What is wrong and what helps.
+        problem: String,
+    },
+    /// Cells are not square.
+    #[error(
+        "{path}: cells of {width} by {height} are not square; resample with\n  \
+         gdalwarp -tr {cell} {cell} -r bilinear {path} {stem}_square.tif", cell = width.min(*height),
+        path = path.display(), stem = stem(path)
+    )]
+    NotSquare {
+        /// The file.
+        path: PathBuf,
+        /// Extent of a cell along x \[m\].
+        width: f64,
+        /// Extent of a cell along y \[m\].
+        height: f64,
+    },
+    /// The CRS is geographic: positions in degrees.
+    #[error(
+        "{path} has its positions in degrees ({found}), granflow needs metres; reproject with\n  \
+         gdalwarp -t_srs EPSG:{epsg} -tr {cell} {cell} -r bilinear {path} {stem}_metres.tif\n\
+         (EPSG:{epsg} is the UTM zone of its centre, the national system does as well)",
+        path = path.display(), stem = stem(path)
+    )]
+    Geographic {
+        /// The file.
+        path: PathBuf,
+        /// The system or the cell size that shows it.
+        found: String,
+        /// The UTM zone that fits.
+        epsg: u32,
+        /// A cell size in metres that fits.
+        cell: f64,
+    },
+    /// The unit of the coordinates is not the metre.
+    #[error(
+        "{path}: one unit of its coordinates is {metres} m, granflow needs metres; reproject with\n  \
+         gdalwarp -t_srs EPSG:xxxx -tr {cell} {cell} -r bilinear {path} {stem}_metres.tif\n\
+         (EPSG:xxxx: a system in metres, see epsg.io; mind that elevations may be in feet too)",
+        path = path.display(), stem = stem(path)
+    )]
+    Unit {
+        /// The file.
+        path: PathBuf,
+        /// Metres per unit.
+        metres: f64,
+        /// Cell size in metres.
+        cell: f64,
+    },
+    /// No cell has a value.
+    #[error("{path}: all {cells} cells are nodata; check the nodata value and the extent it was cut to",
+        path = path.display())]
+    Empty {
+        /// The file.
+        path: PathBuf,
+        /// Number of cells.
+        cells: usize,
+    },
+    /// A value that stands for nodata is not declared as nodata.
+    #[error(
+        "{path}: the value {found} stands for nodata but is not declared so; declare it with\n  \
+         gdal_edit.py -a_nodata {found} {path}\n(in an ASCII grid: NODATA_value {found})", path = path.display()
+    )]
+    Undeclared {
+        /// The file.
+        path: PathBuf,
+        /// The value.
+        found: f64,
+    },
+    /// Two coordinate reference systems that should be one.
+    #[error(
+        "{path} is in {own}, the terrain of the case in {wanted} ({proof}); correct crs in the case, or \
+         reproject with\n  \
+         gdalwarp -t_srs {target} {path} {stem}_reprojected.tif", path = path.display(), stem = stem(path)
+    )]
+    CrsMismatch {
+        /// The file.
+        path: PathBuf,
+        /// Its system.
+        own: String,
+        /// The other system.
+        wanted: String,
+        /// What differs.
+        proof: String,
+        /// What `gdalwarp -t_srs` takes.
+        target: String,
+    },
+}
+
+impl RasterError {
+    pub(super) fn header(path: &Path, line: usize, problem: impl Into<String>) -> RasterError {
+        RasterError::Header { path: path.into(), line, problem: problem.into() }
+    }
+
+    pub(super) fn geotiff(path: &Path, problem: impl std::fmt::Display) -> RasterError {
+        RasterError::GeoTiff { path: path.into(), problem: problem.to_string() }
+    }
+
+    pub(super) fn geographic(path: &Path, raster: &Raster) -> RasterError {
+        let (x, y) = (0.5 * (raster.west + raster.east()), 0.5 * (raster.south + raster.north()));
+        let zone = (((x + 180.0) / 6.0).floor().rem_euclid(60.0)) as u32 + 1;
+        let cell = two_digits(raster.cell * 111_320.0 * y.to_radians().cos().abs().max(0.1).sqrt());
+        let found = match &raster.crs {
+            Some(crs) => format!("{crs}, cell size {}", raster.cell),
+            None => format!("cell size {}", raster.cell),
+        };
+        let epsg = if y < 0.0 { 32700 + zone } else { 32600 + zone };
+        RasterError::Geographic { path: path.into(), found, epsg, cell }
+    }
+
+    pub(super) fn unit(path: &Path, metres: f64, cell: f64) -> RasterError {
+        RasterError::Unit { path: path.into(), metres, cell: two_digits(cell * metres) }
+    }
+
+    pub(super) fn mismatch(path: &Path, own: &Crs, wanted: &Crs, proof: String) -> RasterError {
+        let target = wanted.epsg.map_or("TERRAIN.prj".to_string(), |code| format!("EPSG:{code}"));
+        let (own, wanted) = (own.to_string(), wanted.to_string());
+        RasterError::CrsMismatch { path: path.into(), own, wanted, proof, target }
+    }
+}
+
+fn stem(path: &Path) -> String {
+    path.with_extension("").display().to_string()
+}
+
+fn hint(found: &str) -> &'static str {
+    let comma = found.contains(',') && found.replace(',', ".").parse::<f64>().is_ok();
+    if comma { "; decimals are written with a point" } else { "; values are numbers or the nodata value" }
+}
+
+/// Rounds to two significant digits.
+fn two_digits(value: f64) -> f64 {
+    let scale = 10f64.powi(value.abs().log10().floor() as i32 - 1);
+    let rounded = (value / scale).round() * scale;
+    if scale < 1.0 { (rounded * 1e6).round() / 1e6 } else { rounded }
+}

@@ -1,0 +1,203 @@
+//! What can be wrong with a release, each with its cure.
+
+use crate::raster::{Crs, Raster, RasterError};
+use std::path::{Path, PathBuf};
+use thiserror::Error;
+
+/// Why a release was refused.
+#[derive(Debug, Error)]
+pub enum ReleaseError {
+    /// The file could not be opened or read.
+    #[error("{path}: {source}", path = path.display())]
+    Io {
+        /// The file.
+        path: PathBuf,
+        /// What the system said.
+        source: std::io::Error,
+    },
+    /// The content is neither a shapefile nor GeoJSON.
+    #[error(
+        "{path} is neither a shapefile (.shp) nor GeoJSON, it begins with `{found}`; convert it with\n  \
+         ogr2ogr release.geojson {path}", path = path.display()
+    )]
+    Format {
+        /// The file.
+        path: PathBuf,
+        /// How it begins.
+        found: String,
+    },
+    /// The file is damaged.
+    #[error("{path} cannot be read: {problem}", path = path.display())]
+    Unreadable {
+        /// The file.
+        path: PathBuf,
+        /// What the decoder said.
+        problem: String,
+    },
+    /// A feature is no polygon or no sound one.
+    #[error("{path}, feature {feature}: {problem}", path = path.display())]
+    Shape {
+        /// The file.
+        path: PathBuf,
+        /// Number of the feature, from 1.
+        feature: usize,
+        /// What is wrong and what helps.
+        problem: String,
+    },
+    /// The attribute that should hold the thickness does not exist.
+    #[error("{path} has no attribute `{name}`{nearest}; it has {available}", path = path.display())]
+    Attribute {
+        /// The file.
+        path: PathBuf,
+        /// The name asked for.
+        name: String,
+        /// The nearest spelling as a question, or nothing.
+        nearest: String,
+        /// All attributes and what else helps.
+        available: String,
+    },
+    /// A thickness is negative or no number.
+    #[error(
+        "{path}, feature {feature}: {name} = `{found}` is not a thickness; allowed are numbers from 0 on, in metres",
+        path = path.display()
+    )]
+    Thickness {
+        /// The file.
+        path: PathBuf,
+        /// Number of the feature, from 1.
+        feature: usize,
+        /// The attribute.
+        name: String,
+        /// Its content.
+        found: String,
+    },
+    /// A thickness raster has a negative value.
+    #[error(
+        "{path}: the thickness at ({x}, {y}) is {found} m; allowed are values from 0 on, and nodata for none",
+        path = path.display()
+    )]
+    Negative {
+        /// The file.
+        path: PathBuf,
+        /// x of the cell's centre \[m\].
+        x: f64,
+        /// y of the cell's centre \[m\].
+        y: f64,
+        /// The value \[m\].
+        found: f64,
+    },
+    /// The release and the terrain are in different coordinate reference systems.
+    #[error(
+        "{path} is in {own}, the terrain in {terrain} ({proof}); reproject the polygons with\n  \
+         ogr2ogr -t_srs {target} release_reprojected.shp {path}", path = path.display()
+    )]
+    System {
+        /// The file.
+        path: PathBuf,
+        /// Its system.
+        own: String,
+        /// The terrain's.
+        terrain: String,
+        /// What differs.
+        proof: String,
+        /// What `ogr2ogr -t_srs` takes.
+        target: String,
+    },
+    /// Some or all of the release lies where the terrain has no values.
+    #[error(
+        "{path}: {share} of the release lies {place}\n  release x {} to {}, y {} to {}\n  terrain x {} to {}, \
+         y {} to {}\n{cure}", release[0], release[2], release[1], release[3], terrain[0], terrain[2], terrain[1],
+        terrain[3], path = path.display()
+    )]
+    Outside {
+        /// The file.
+        path: PathBuf,
+        /// How much, as text.
+        share: String,
+        /// Beyond the edge or on nodata.
+        place: &'static str,
+        /// Bounding box of the release: west, south, east, north \[m\].
+        release: Box<[f64; 4]>,
+        /// Bounding box of the terrain: west, south, east, north \[m\].
+        terrain: Box<[f64; 4]>,
+        /// What probably helps.
+        cure: String,
+    },
+    /// Nothing is released.
+    #[error("{path} releases nothing: {problem}", path = path.display())]
+    Nothing {
+        /// The file.
+        path: PathBuf,
+        /// Why.
+        problem: &'static str,
+    },
+    /// A cap that cannot be.
+    #[error("the cap releases nothing: {problem}")]
+    Cap {
+        /// Why, with what is allowed.
+        problem: String,
+    },
+    /// The thickness raster was refused.
+    #[error(transparent)]
+    Raster(#[from] RasterError),
+}
+
+impl ReleaseError {
+    pub(super) fn system(path: &Path, own: &Crs, terrain: &Crs, proof: String) -> ReleaseError {
+        let (own, target, terrain) = (own.to_string(), target(Some(terrain)), terrain.to_string());
+        ReleaseError::System { path: path.into(), own, terrain, proof, target }
+    }
+
+    pub(super) fn attribute(path: &Path, name: &str, attributes: &[(String, String)]) -> ReleaseError {
+        let likeness = |other: &str| strsim::jaro_winkler(&other.to_lowercase(), &name.to_lowercase());
+        let nearest =
+            attributes.iter().map(|(other, _)| other).max_by(|a, b| likeness(a).total_cmp(&likeness(b)));
+        let nearest =
+            nearest.filter(|other| likeness(other) > 0.7).map(|other| format!(", did you mean `{other}`?"));
+        let names: Vec<&str> = attributes.iter().map(|(other, _)| other.as_str()).collect();
+        let available =
+            match (names.is_empty(), path.extension().is_some_and(|e| e.eq_ignore_ascii_case("shp"))) {
+                (false, _) => names.join(", "),
+                (true, true) => {
+                    "none: is its .dbf file missing? thickness = 1.0 in the case works without".to_string()
+                }
+                (true, false) => {
+                    "none; add properties to the features, or write thickness = 1.0 in the case".to_string()
+                }
+            };
+        let nearest = nearest.unwrap_or_default();
+        ReleaseError::Attribute { path: path.into(), name: name.to_string(), nearest, available }
+    }
+
+    pub(super) fn outside(path: &Path, release: [f64; 4], template: &Raster, lost: f64) -> ReleaseError {
+        let terrain = [template.west, template.south, template.east(), template.north()];
+        let apart = (0..2).any(|k| release[k] >= terrain[k + 2] || release[k + 2] <= terrain[k]);
+        let within = (0..2).all(|k| release[k] >= terrain[k] && release[k + 2] <= terrain[k + 2]);
+        let degrees =
+            release[0] >= -360.0 && release[2] <= 360.0 && release[1] >= -90.0 && release[3] <= 90.0;
+        let reproject =
+            format!("ogr2ogr -t_srs {} reprojected.shp {}", target(template.crs.as_ref()), path.display());
+        let cure = match (apart, degrees) {
+            (true, true) => format!("the release looks like degrees; reproject it with\n  {reproject}"),
+            (true, false) => format!(
+                "the two are probably in different systems; reproject the release with\n  {reproject}"
+            ),
+            _ => {
+                "cut the terrain wider, fill its gaps (gdal_fillnodata.py), or shrink the release".to_string()
+            }
+        };
+        let place = if within {
+            "on cells without a value"
+        } else {
+            "beyond the terrain's edge or on cells without a value"
+        };
+        let round = |bounds: [f64; 4]| Box::new(bounds.map(|at| (at * 100.0).round() / 100.0));
+        let (release, terrain) = (round(release), round(terrain));
+        let share = if lost > 1.0 - 1e-9 { "all".to_string() } else { format!("{:.2} %", 100.0 * lost) };
+        ReleaseError::Outside { path: path.into(), share, place, release, terrain, cure }
+    }
+}
+
+fn target(crs: Option<&Crs>) -> String {
+    crs.and_then(|crs| crs.epsg).map_or("TERRAIN.prj".to_string(), |code| format!("EPSG:{code}"))
+}

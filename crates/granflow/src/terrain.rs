@@ -1,0 +1,211 @@
+//! Terrain: the bed z = b(x, y) of a raster with its gradient and Hessian by local least squares.
+
+mod fit;
+
+use crate::raster::Raster;
+use rayon::prelude::*;
+
+/// The length over which the bed's gradient and curvature are taken.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Curvature {
+    /// Span of the window of the least-squares fit \[m\]; see [`Curvature::half_width`].
+    Length(f64),
+    /// No curvature: the Hessian is zero, the gradient is that of the 3 x 3 window.
+    Off,
+}
+
+impl Curvature {
+    /// Half-width m of the window in cells: m = max(1, round(length / (2 cell))).
+    ///
+    /// The window has (2 m + 1)^2 cells; between the centres of its outermost cells lie 2 m cells.
+    pub fn half_width(self, cell: f64) -> usize {
+        match self {
+            Curvature::Length(length) => ((0.5 * length / cell).round() as usize).max(1),
+            Curvature::Off => 1,
+        }
+    }
+}
+
+/// A bed with its derivatives, one entry per cell in the order of [`Raster::values`]; zero at nodata cells.
+#[derive(Debug, Clone)]
+pub struct Terrain {
+    /// Elevation b of the bed \[m\], NaN outside.
+    pub bed: Raster,
+    /// Gradient (b_x, b_y).
+    pub gradient: Vec<[f64; 2]>,
+    /// Hessian (b_xx, b_xy, b_yy) \[1/m\]; zero with [`Curvature::Off`].
+    pub hessian: Vec<[f64; 3]>,
+}
+
+/// How steep a terrain is.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Steepness {
+    /// Number of cells with values.
+    pub cells: usize,
+    /// How many of them are steeper than the limit asked for.
+    pub steeper: usize,
+    /// `steeper / cells`.
+    pub share: f64,
+    /// The largest slope \[radians\].
+    pub max_slope: f64,
+}
+
+impl Terrain {
+    /// Fits b + b_x x + b_y y + b_xx x^2/2 + b_xy x y + b_yy y^2/2 around every cell by least squares, all cells of
+    /// its window weighing the same.
+    ///
+    /// Nodata cells and cells beyond the edge are left out. Where the rest does not determine the six coefficients
+    /// (ragged 3 x 3 windows at an edge), the window widens by one cell on each side; where that fails too, a plane
+    /// is fitted, then differences towards the neighbours there are, and a lone cell is level. Every quadratic bed
+    /// is reproduced exactly but for rounding, and beds mirrored in an axis give mirrored derivatives bit for bit.
+    pub fn new(bed: Raster, curvature: Curvature) -> Terrain {
+        let half = curvature.half_width(bed.cell);
+        let fits = fit::derivatives(&bed, half);
+        let gradient = fits.par_iter().map(|fit| fit.gradient).collect();
+        let hessian = match curvature {
+            Curvature::Length(_) => fits.par_iter().map(|fit| fit.hessian).collect(),
+            Curvature::Off => vec![[0.0; 3]; fits.len()],
+        };
+        Terrain { bed, gradient, hessian }
+    }
+
+    /// Cosine of the slope of a cell, c = 1 / sqrt(1 + |grad b|^2).
+    pub fn cosine(&self, cell: usize) -> f64 {
+        let [x, y] = self.gradient[cell];
+        1.0 / (1.0 + (x * x + y * y)).sqrt()
+    }
+
+    /// Largest slope, and the cells steeper than `limit` \[radians\].
+    pub fn steepness(&self, limit: f64) -> Steepness {
+        let valid = (0..self.gradient.len()).filter(|&k| !self.bed.values[k].is_nan());
+        let tangent = |k: usize| self.gradient[k][0].hypot(self.gradient[k][1]);
+        let count = |(cells, steeper, max): (usize, usize, f64), t: f64| {
+            (cells + 1, steeper + usize::from(t > limit.tan()), max.max(t))
+        };
+        let (cells, steeper, max) = valid.map(tangent).fold((0, 0, 0.0), count);
+        Steepness { cells, steeper, share: steeper as f64 / cells.max(1) as f64, max_slope: max.atan() }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::raster::tests::sampled;
+
+    fn quadratic(x: f64, y: f64) -> f64 {
+        1500.0 + 0.3 * x - 0.7 * y + 0.011 * x * x - 0.023 * x * y + 0.017 * y * y
+    }
+
+    fn worst(terrain: &Terrain) -> f64 {
+        let error = |k: usize| {
+            let (x, y) = (terrain.bed.x(k % terrain.bed.columns), terrain.bed.y(k / terrain.bed.columns));
+            let exact = [0.3 + 0.022 * x - 0.023 * y, -0.7 - 0.023 * x + 0.034 * y, 0.022, -0.023, 0.034];
+            let found = terrain.gradient[k].iter().chain(&terrain.hessian[k]);
+            found.zip(exact).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max)
+        };
+        let valid = (0..terrain.gradient.len()).filter(|&k| !terrain.bed.values[k].is_nan());
+        valid.map(error).fold(0.0, f64::max)
+    }
+
+    fn ragged(f: impl Fn(f64, f64) -> f64) -> Raster {
+        sampled(23, 17, |x, y| if (x - 9.0).hypot(y - 8.0) < 2.6 || x + y < 4.0 { f64::NAN } else { f(x, y) })
+    }
+
+    #[test]
+    fn quadratic_beds_are_exact_up_to_edges_and_nodata() {
+        for length in [0.0, 2.0, 4.0, 6.0] {
+            let terrain = Terrain::new(sampled(23, 17, quadratic), Curvature::Length(length));
+            assert!(worst(&terrain) < 1e-9, "{length}: {}", worst(&terrain));
+        }
+        for length in [4.0, 6.0] {
+            let terrain = Terrain::new(ragged(quadratic), Curvature::Length(length));
+            assert!(worst(&terrain) < 1e-9, "{length}: {}", worst(&terrain));
+        }
+        let five = Raster { cell: 5.0, ..sampled(9, 9, |x, y| quadratic(5.0 * x, 5.0 * y)) };
+        assert!(worst(&Terrain::new(five, Curvature::Length(20.0))) < 1e-9);
+    }
+
+    #[test]
+    fn the_window_follows_the_length_and_off_has_no_curvature() {
+        let half = |length: f64| Curvature::Length(length).half_width(5.0);
+        assert_eq!([half(1.0), half(14.9), half(15.0), half(20.0), half(40.0)], [1, 1, 2, 2, 4]);
+        let rough = |x: f64, y: f64| (3.0 * x).sin() + (2.0 * y).cos();
+        let off = Terrain::new(sampled(9, 9, rough), Curvature::Off);
+        let narrow = Terrain::new(sampled(9, 9, rough), Curvature::Length(2.0));
+        assert_eq!(off.gradient, narrow.gradient);
+        assert!(off.hessian.iter().all(|h| *h == [0.0; 3]) && narrow.hessian[40][0] != 0.0);
+    }
+
+    #[test]
+    fn mirrored_beds_give_mirrored_derivatives_bit_for_bit() {
+        let rough = |x: f64, y: f64| 900.0 + 7.0 * (0.7 * x).sin() * (0.3 * y + 0.1 * x).cos() + 0.4 * y;
+        for length in [2.0, 4.0, 6.0] {
+            let bed = ragged(rough);
+            let (columns, rows) = (bed.columns, bed.rows);
+            let values =
+                (0..rows * columns).map(|k| bed.at(columns - 1 - k % columns, k / columns)).collect();
+            let flipped = (0..rows * columns).map(|k| bed.at(k % columns, rows - 1 - k / columns)).collect();
+            let east = Terrain::new(bed.with_values(values), Curvature::Length(length));
+            let north = Terrain::new(bed.with_values(flipped), Curvature::Length(length));
+            let terrain = Terrain::new(bed, Curvature::Length(length));
+            for k in 0..rows * columns {
+                let ([x, y], [xx, xy, yy]) = (terrain.gradient[k], terrain.hessian[k]);
+                let mirrored = k / columns * columns + columns - 1 - k % columns;
+                assert_eq!(
+                    (east.gradient[mirrored], east.hessian[mirrored]),
+                    ([-x, y], [xx, -xy, yy]),
+                    "{k}"
+                );
+                let mirrored = (rows - 1 - k / columns) * columns + k % columns;
+                assert_eq!(
+                    (north.gradient[mirrored], north.hessian[mirrored]),
+                    ([x, -y], [xx, -xy, yy]),
+                    "{k}"
+                );
+            }
+        }
+    }
+
+    #[test]
+    fn swapped_axes_give_swapped_derivatives_bit_for_bit_in_full_windows() {
+        let rough = |x: f64, y: f64| 900.0 + 7.0 * (0.7 * x).sin() * (0.3 * y + 0.1 * x).cos() + 0.4 * y;
+        let bed = sampled(12, 12, rough);
+        let terrain = Terrain::new(bed.clone(), Curvature::Length(6.0));
+        let swapped = Terrain::new(sampled(12, 12, |x, y| rough(y, x)), Curvature::Length(6.0));
+        for k in (0..144).filter(|k| (3..9).contains(&(k % 12)) && (3..9).contains(&(k / 12))) {
+            let ([x, y], [xx, xy, yy]) = (terrain.gradient[k], terrain.hessian[k]);
+            let other = k % 12 * 12 + k / 12;
+            assert_eq!((swapped.gradient[other], swapped.hessian[other]), ([y, x], [yy, xy, xx]));
+        }
+    }
+
+    #[test]
+    fn poor_neighbourhoods_fall_back_to_planes_differences_and_level() {
+        let strip = Terrain::new(sampled(9, 1, |x, _| 2.0 * x), Curvature::Length(4.0));
+        assert!(strip.gradient.iter().all(|g| (g[0] - 2.0).abs() < 1e-12 && g[1] == 0.0));
+        let pair = Terrain::new(sampled(2, 2, |x, y| 2.0 * x - y), Curvature::Length(4.0));
+        assert!(pair.gradient.iter().all(|g| (g[0] - 2.0).abs() < 1e-12 && (g[1] + 1.0).abs() < 1e-12));
+        assert!(pair.hessian.iter().all(|h| *h == [0.0; 3]));
+        let lone = sampled(5, 5, |x, y| if x == 2.5 && y == 2.5 { 7.0 } else { f64::NAN });
+        let lone = Terrain::new(lone, Curvature::Length(4.0));
+        assert!(lone.gradient.iter().all(|g| *g == [0.0; 2]) && lone.hessian.iter().all(|h| *h == [0.0; 3]));
+    }
+
+    #[test]
+    fn steepness_counts_the_cells_above_a_limit() {
+        let bed = sampled(20, 8, |x, y| {
+            if y > 7.0 {
+                f64::NAN
+            } else if x < 10.0 {
+                0.0
+            } else {
+                2.0 * (x - 10.0)
+            }
+        });
+        let steep = Terrain::new(bed, Curvature::Off).steepness(60f64.to_radians());
+        assert_eq!((steep.cells, steep.steeper), (140, 63));
+        assert!((steep.max_slope.tan() - 2.0).abs() < 1e-9 && (steep.share - 0.45).abs() < 1e-15);
+        let terrain = Terrain::new(sampled(5, 5, |x, _| x), Curvature::Off);
+        assert!((terrain.cosine(12) - 0.5f64.sqrt()).abs() < 1e-12);
+    }
+}
