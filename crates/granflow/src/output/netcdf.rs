@@ -340,3 +340,122 @@ fn text(value: &str) -> NcAttrValue {
         NcAttrValue::Chars(value.into())
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::output::frames::Field;
+    use netcdf_reader::NcFile;
+    use std::time::Duration;
+
+    fn variable(name: &str, axes: &[&str], precision: Precision, values: Values) -> Variable {
+        Variable {
+            name: name.into(),
+            long_name: format!("the {name}"),
+            units: "m".into(),
+            axes: axes.iter().map(|&axis| axis.into()).collect(),
+            precision,
+            values,
+        }
+    }
+
+    fn sample(folder: &Path) -> (Dataset, Frames) {
+        let fields = [("thickness", 6), ("speed", 6)];
+        let fields = fields.map(|(name, length)| Field { name: name.into(), length }).into();
+        let mut frames = Frames::create(&folder.join("frames"), Precision::F64, fields).unwrap();
+        for t in [0.0, 0.5, 1.0] {
+            let thickness: Vec<_> = (0..6).map(|i| t + f64::from(i) / 3.0).collect();
+            frames.append(t, &[&thickness, &[t; 6]]).unwrap();
+        }
+        let dataset = Dataset {
+            title: "Überlauf".into(),
+            history: history(UNIX_EPOCH, "granflow run"),
+            case: "# long\n".repeat(20_000),
+            attributes: vec![("references".into(), String::new())],
+            axes: vec![
+                Axis::time(frames.times().to_vec(), "s"),
+                Axis::along("Y", "y", vec![15.0, 5.0], "m", true),
+                Axis::along("X", "x", vec![5.0, 15.0, 25.0], "m", true),
+            ],
+            variables: vec![
+                variable(
+                    "thickness",
+                    &["time", "y", "x"],
+                    Precision::F64,
+                    Values::Stored("thickness".into()),
+                ),
+                variable("speed", &["time", "y", "x"], Precision::F32, Values::Stored("speed".into())),
+                variable("bed", &["y", "x"], Precision::F32, Values::Static((0..6).map(f64::from).collect())),
+                variable("edge", &["time", "x"], Precision::F64, Values::Series(vec![vec![1.0; 3]; 3])),
+            ],
+            crs: Some(Crs { epsg: Some(31287), wkt: None }),
+            outside: Some(vec![false, true, false, false, false, false]),
+        };
+        (dataset, frames)
+    }
+
+    #[test]
+    fn what_is_written_is_read() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("result.nc");
+        let (dataset, mut frames) = sample(folder.path());
+        dataset.write(&path, Some(&mut frames)).unwrap();
+        let file = NcFile::open(&path).unwrap();
+        let thickness = file.read_variable::<f64>("thickness").unwrap();
+        assert_eq!(thickness.shape(), [3, 2, 3]);
+        assert_eq!(thickness[[2, 1, 2]].to_bits(), (1.0 + 5.0 / 3.0_f64).to_bits());
+        assert!((0..3).all(|t| thickness[[t, 0, 1]].is_nan()));
+        assert_eq!(thickness.iter().filter(|value| value.is_nan()).count(), 3);
+        let speed = file.read_variable::<f32>("speed").unwrap();
+        assert_eq!((speed[[1, 1, 1]], speed[[0, 0, 1]].is_nan()), (0.5, true));
+        let bed = file.read_variable::<f32>("bed").unwrap();
+        assert_eq!((bed.shape(), bed[[1, 2]]), (&[2, 3][..], 5.0));
+        assert_eq!(file.read_variable::<f64>("edge").unwrap().sum(), 9.0);
+        assert_eq!(file.read_variable::<f64>("time").unwrap().as_slice().unwrap(), [0.0, 0.5, 1.0]);
+        assert_eq!(file.read_variable::<f64>("y").unwrap().as_slice().unwrap(), [15.0, 5.0]);
+        let attribute = |name: &str| file.global_attribute(name).unwrap().value.as_string().unwrap();
+        assert_eq!((attribute("Conventions"), attribute("title")), ("CF-1.11".into(), "Überlauf".into()));
+        assert_eq!(attribute("case"), dataset.case);
+        let crs = &file.variable("crs").unwrap().attributes;
+        assert!(
+            crs.iter()
+                .any(|a| a.name == "spatial_ref" && a.value.as_string().as_deref() == Some("EPSG:31287"))
+        );
+        let of_bed = &file.variable("bed").unwrap().attributes;
+        assert!(
+            of_bed.iter().any(|a| a.name == "grid_mapping" && a.value.as_string().as_deref() == Some("crs"))
+        );
+    }
+
+    #[test]
+    fn what_does_not_fit_together_is_named() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("result.nc");
+        let (sound, mut frames) = sample(folder.path());
+        let mut refuse = |part: &str, change: &dyn Fn(&mut Dataset)| {
+            let mut dataset = sound.clone();
+            change(&mut dataset);
+            let message = dataset.write(&path, Some(&mut frames)).unwrap_err().to_string();
+            assert!(message.contains(part) && message.contains("result.nc"), "{message}");
+            assert!(!path.exists());
+        };
+        refuse("axis z", &|d| d.variables[2].axes[0] = "z".into());
+        refuse("no field h", &|d| d.variables[0].values = Values::Stored("h".into()));
+        refuse("1 maps of 6 values", &|d| d.variables[2].values = Values::Static(vec![0.0; 5]));
+        refuse("3 maps of 3 values", &|d| d.variables[3].values = Values::Series(vec![vec![0.0; 3]; 2]));
+        refuse("does not fit", &|d| d.variables[0].values = Values::Static(vec![0.0; 18]));
+        refuse("no values", &|d| d.axes[0].values.clear());
+        refuse("bed", &|d| d.variables[1].name = "bed".into());
+        assert!(sound.write(&path, None).unwrap_err().to_string().contains("needs the store"));
+    }
+
+    #[test]
+    fn instants_are_written_as_dates() {
+        let days = |days: u64| UNIX_EPOCH + Duration::from_secs(days * 86_400 + 3661);
+        for (day, date) in
+            [(0, "1970-01-01"), (11_016, "2000-02-29"), (11_017, "2000-03-01"), (19_722, "2023-12-31")]
+        {
+            assert_eq!(history(days(day), "x"), format!("{date}T01:01:01Z x"));
+        }
+    }
+}

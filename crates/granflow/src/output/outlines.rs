@@ -296,12 +296,23 @@ mod tests {
     }
 
     #[test]
-    fn values_at_the_threshold_and_rough_maps_give_sound_rings() {
-        let checkers = map(UNIT, 40, |x, y| ((x * 12.9898 + y * 78.233).sin() * 3.0).round());
-        let area = contour(&checkers, UNIT, 1.0);
+    fn on_a_rough_map_every_centre_is_on_its_side_and_no_vertex_is_used_twice() {
+        // Rounded values: many lie exactly on the threshold.
+        let rough = map(UNIT, 40, |x, y| ((x * 12.9898 + y * 78.233).sin() * 3.0).round());
+        let area = contour(&rough, UNIT, 1.0);
         assert_rings_sound(&area);
-        let inside = checkers.iter().filter(|&&value| value >= 1.0).count() as f64;
-        assert!(area.unsigned_area() > 0.5 * inside && area.unsigned_area() < inside * 1.5);
+        let wrong = (0..rough.len()).filter(|&i| {
+            let centre = Coord { x: 0.5 + (i % 100) as f64, y: 0.5 + (i / 100) as f64 };
+            area.contains(&centre) != (rough[i] >= 1.0)
+        });
+        assert_eq!(wrong.count(), 0);
+        let rings = area.iter().flat_map(|polygon| polygon.interiors().iter().chain([polygon.exterior()]));
+        let mut vertices: Vec<_> =
+            rings.flat_map(|ring| &ring.0[1..]).map(|at| (at.x.to_bits(), at.y.to_bits())).collect();
+        let all = vertices.len();
+        vertices.sort_unstable();
+        vertices.dedup();
+        assert_eq!(vertices.len(), all);
     }
 
     #[test]
