@@ -2,10 +2,12 @@
 
 pub mod backend;
 pub mod boundary;
+pub mod case;
 pub mod field;
 pub mod grid;
 pub mod limiter;
 pub mod observe;
+pub mod output;
 pub mod raster;
 pub mod real;
 pub mod release;

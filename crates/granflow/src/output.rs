@@ -1,0 +1,250 @@
+//! The files of a run: one module per format, plain data in, files out.
+//!
+//! Nothing here knows the numerics. Every file under its final name is complete at every instant: [`whole_file`] writes
+//! beside the target, syncs and renames; the two files that grow ([`frames`], [`ledger`]) take back a torn end.
+
+mod base64;
+pub mod checkpoint;
+pub mod csv;
+pub mod frames;
+mod hdf5;
+pub mod ledger;
+pub mod netcdf;
+pub mod outlines;
+pub mod report;
+pub mod summary;
+pub mod tables;
+pub mod vtk;
+
+use std::fs::{self, File};
+use std::io::{self, BufWriter, Write};
+use std::path::{Path, PathBuf};
+
+/// How the temporary neighbours of final files begin and end; see [`remove_leftovers`].
+const TEMPORARY: (&str, &str) = (".granflow-", ".part");
+
+/// Why a file of a run could not be written or read; every message begins with the file.
+#[derive(Debug, thiserror::Error)]
+pub enum Error {
+    /// The system refused: full disk, no permission, no such file.
+    #[error("{}: cannot {action}: {source}{}", path.display(), cure(source))]
+    Io {
+        /// The file.
+        path: PathBuf,
+        /// What was tried, as in "cannot write".
+        action: &'static str,
+        /// What the system said.
+        source: io::Error,
+    },
+    /// The file is there but is not what it should be: truncated, altered, another format.
+    #[error("{}: {problem}", path.display())]
+    Damaged {
+        /// The file.
+        path: PathBuf,
+        /// What is wrong, where, and what helps.
+        problem: String,
+    },
+    /// The file is sound but belongs to another case, version or shape than the one at hand.
+    #[error("{}: {problem}", path.display())]
+    Mismatch {
+        /// The file.
+        path: PathBuf,
+        /// What was found, what was expected, and what helps.
+        problem: String,
+    },
+    /// The data handed over cannot be written as this file.
+    #[error("{}: cannot be written: {problem}", path.display())]
+    Invalid {
+        /// The file that was to be written.
+        path: PathBuf,
+        /// What does not fit together.
+        problem: String,
+    },
+}
+
+impl Error {
+    fn io(path: &Path, action: &'static str) -> impl FnOnce(io::Error) -> Self + use<> {
+        let path = path.to_owned();
+        // An error of ours that travelled through an io::Write comes out as itself.
+        move |source| source.downcast().unwrap_or_else(|source| Self::Io { path, action, source })
+    }
+
+    fn damaged(path: &Path, problem: impl Into<String>) -> Self {
+        Self::Damaged { path: path.to_owned(), problem: problem.into() }
+    }
+
+    fn mismatch(path: &Path, problem: impl Into<String>) -> Self {
+        Self::Mismatch { path: path.to_owned(), problem: problem.into() }
+    }
+
+    fn invalid(path: &Path, problem: impl Into<String>) -> Self {
+        Self::Invalid { path: path.to_owned(), problem: problem.into() }
+    }
+}
+
+/// The remedy for the common refusals of the system.
+fn cure(error: &io::Error) -> &'static str {
+    match error.kind() {
+        io::ErrorKind::StorageFull | io::ErrorKind::QuotaExceeded => {
+            "; what was complete before is still there: make room, then continue with --resume"
+        }
+        io::ErrorKind::PermissionDenied | io::ErrorKind::ReadOnlyFilesystem => {
+            "; choose a folder you may write to with --out"
+        }
+        _ => "",
+    }
+}
+
+/// Writes `path` as a whole: a temporary file in the same folder, filled by `fill`, synced, then renamed over `path`.
+///
+/// Whoever opens `path` sees the old file or the new one, never a part. Missing folders are made. When anything fails the
+/// old file stays and the temporary one is removed.
+///
+/// # Errors
+/// [`Error::Io`] naming `path`, or the error of ours that `fill` wrapped by [`io::Error::other`].
+pub fn whole_file(path: &Path, fill: impl FnOnce(&mut dyn Write) -> io::Result<()>) -> Result<(), Error> {
+    let folder = match path.parent() {
+        Some(folder) if !folder.as_os_str().is_empty() => folder,
+        _ => Path::new("."),
+    };
+    let write = || -> io::Result<()> {
+        fs::create_dir_all(folder)?;
+        let mut builder = tempfile::Builder::new();
+        builder.prefix(TEMPORARY.0).suffix(TEMPORARY.1);
+        #[cfg(unix)]
+        {
+            use std::os::unix::fs::PermissionsExt;
+            builder.permissions(fs::Permissions::from_mode(0o666)); // the umask takes away from this, as for any file
+        }
+        let mut file = builder.tempfile_in(folder)?;
+        let mut buffer = BufWriter::with_capacity(1 << 18, file.as_file_mut());
+        fill(&mut buffer)?;
+        buffer.flush()?;
+        drop(buffer);
+        file.as_file().sync_all()?;
+        file.persist(path).map_err(|refused| refused.error)?;
+        sync_folder(folder)
+    };
+    write().map_err(Error::io(path, "write"))
+}
+
+/// Makes a rename in `folder` last through a power cut (only Unix lets a folder be synced).
+fn sync_folder(folder: &Path) -> io::Result<()> {
+    if cfg!(unix) { File::open(folder)?.sync_all() } else { Ok(()) }
+}
+
+/// Removes the temporary files that a killed run left in `folder` and returns how many there were.
+///
+/// # Errors
+/// [`Error::Io`] if the folder cannot be listed or a file not removed; a missing folder counts as empty.
+pub fn remove_leftovers(folder: &Path) -> Result<usize, Error> {
+    let entries = match fs::read_dir(folder) {
+        Err(absent) if absent.kind() == io::ErrorKind::NotFound => return Ok(0),
+        entries => entries.map_err(Error::io(folder, "list"))?,
+    };
+    let mut removed = 0;
+    for entry in entries {
+        let entry = entry.map_err(Error::io(folder, "list"))?;
+        let name = entry.file_name();
+        let name = name.to_string_lossy();
+        if name.starts_with(TEMPORARY.0) && name.ends_with(TEMPORARY.1) {
+            fs::remove_file(entry.path()).map_err(Error::io(&entry.path(), "remove"))?;
+            removed += 1;
+        }
+    }
+    Ok(removed)
+}
+
+/// How many bits a number of a result file keeps.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, serde::Serialize, serde::Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Precision {
+    /// 32 bits, about 7 digits.
+    F32,
+    /// 64 bits, every bit of the computation.
+    #[default]
+    F64,
+}
+
+impl Precision {
+    /// Bytes of one number.
+    #[must_use]
+    pub const fn width(self) -> usize {
+        match self {
+            Self::F32 => 4,
+            Self::F64 => 8,
+        }
+    }
+
+    /// Appends `values` to `bytes`, little endian, rounded to this precision.
+    fn encode(self, values: &[f64], bytes: &mut Vec<u8>) {
+        bytes.reserve(values.len() * self.width());
+        match self {
+            #[expect(clippy::cast_possible_truncation, reason = "rounding to f32 is what was asked for")]
+            Self::F32 => values.iter().for_each(|&v| bytes.extend_from_slice(&(v as f32).to_le_bytes())),
+            Self::F64 => values.iter().for_each(|v| bytes.extend_from_slice(&v.to_le_bytes())),
+        }
+    }
+
+    /// The numbers that [`Precision::encode`] wrote.
+    fn decode(self, bytes: &[u8]) -> Vec<f64> {
+        match self {
+            Self::F32 => bytes.as_chunks().0.iter().map(|&b| f32::from_le_bytes(b).into()).collect(),
+            Self::F64 => bytes.as_chunks().0.iter().map(|&b| f64::from_le_bytes(b)).collect(),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn names(folder: &Path) -> Vec<String> {
+        let mut names: Vec<_> = fs::read_dir(folder)
+            .unwrap()
+            .map(|entry| entry.unwrap().file_name().to_string_lossy().into_owned())
+            .collect();
+        names.sort();
+        names
+    }
+
+    #[test]
+    fn a_failed_write_keeps_the_old_file_and_leaves_nothing_behind() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("deep/result.txt");
+        whole_file(&path, |out| out.write_all(b"old")).unwrap();
+        let failed = whole_file(&path, |out| {
+            out.write_all(b"half of the new")?;
+            Err(io::ErrorKind::StorageFull.into())
+        });
+        let message = failed.unwrap_err().to_string();
+        assert!(message.contains("result.txt") && message.contains("--resume"), "{message}");
+        assert_eq!(fs::read(&path).unwrap(), b"old");
+        assert_eq!(names(path.parent().unwrap()), ["result.txt"]);
+        whole_file(&path, |out| out.write_all(b"new")).unwrap();
+        assert_eq!(fs::read(&path).unwrap(), b"new");
+    }
+
+    #[test]
+    fn only_our_leftovers_are_removed() {
+        let folder = tempfile::tempdir().unwrap();
+        for name in [".granflow-x1.part", "granflow.part", ".granflow-notes"] {
+            fs::write(folder.path().join(name), "").unwrap();
+        }
+        assert_eq!(remove_leftovers(folder.path()).unwrap(), 1);
+        assert_eq!(names(folder.path()), [".granflow-notes", "granflow.part"]);
+        assert_eq!(remove_leftovers(&folder.path().join("absent")).unwrap(), 0);
+    }
+
+    #[cfg(unix)]
+    #[test]
+    fn a_result_is_as_readable_as_any_other_file() {
+        use std::os::unix::fs::PermissionsExt;
+        let folder = tempfile::tempdir().unwrap();
+        let (ours, plain) = (folder.path().join("ours"), folder.path().join("plain"));
+        whole_file(&ours, |out| out.write_all(b"x")).unwrap();
+        fs::write(&plain, "x").unwrap();
+        let mode = |path| fs::metadata(path).unwrap().permissions().mode();
+        assert_eq!(mode(&ours), mode(&plain));
+    }
+}

@@ -1,0 +1,335 @@
+//! The growing store of a run: one frame per output instant, appended to disk, joined into the result files later.
+//!
+//! Layout, all little endian: the line `granflow frames 1`, a u32 length, that many bytes of JSON (precision, names and
+//! lengths of the fields), their CRC-32; then frames of equal size: the time (f64), the fields one after the other, the
+//! CRC-32 of time and fields. A frame is synced before [`Frames::append`] returns, so a crash can tear only the last one.
+
+use super::{Error, Precision, whole_file};
+use serde::{Deserialize, Serialize};
+use std::fmt;
+use std::fs::{File, OpenOptions};
+use std::io::{self, Read, Seek, SeekFrom, Write};
+use std::path::{Path, PathBuf};
+
+const MAGIC: &[u8] = b"granflow frames 1\n";
+
+/// A named field of every frame and how many numbers it has.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Field {
+    /// The name, as the variable of the result is called.
+    pub name: String,
+    /// How many numbers one frame holds.
+    pub length: usize,
+}
+
+#[derive(Serialize, Deserialize)]
+struct Header {
+    precision: Precision,
+    fields: Vec<Field>,
+}
+
+/// The end of a store that a crash had torn; the run computes it again.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Torn {
+    /// The file.
+    pub path: PathBuf,
+    /// Bytes that were dropped.
+    pub bytes: u64,
+    /// Complete frames before them.
+    pub kept: usize,
+}
+
+impl fmt::Display for Torn {
+    fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { path, bytes, kept } = self;
+        write!(
+            out,
+            "{}: the last frame was torn ({bytes} bytes) and is dropped; {kept} complete frames remain",
+            path.display()
+        )
+    }
+}
+
+/// An open store: named fields over time on disk, one frame in memory at most.
+#[derive(Debug)]
+pub struct Frames {
+    path: PathBuf,
+    file: File,
+    precision: Precision,
+    fields: Vec<Field>,
+    times: Vec<f64>,
+    /// Bytes before the first frame.
+    start: u64,
+}
+
+impl Frames {
+    /// Starts an empty store at `path`, over an older one if there is one.
+    ///
+    /// # Errors
+    /// [`Error::Io`] if the file cannot be written.
+    pub fn create(path: &Path, precision: Precision, fields: Vec<Field>) -> Result<Self, Error> {
+        let header = serde_json::to_vec(&Header { precision, fields })
+            .map_err(|error| Error::invalid(path, error.to_string()))?;
+        whole_file(path, |out| {
+            out.write_all(MAGIC)?;
+            out.write_all(&(header.len() as u32).to_le_bytes())?;
+            out.write_all(&header)?;
+            out.write_all(&crc32fast::hash(&header).to_le_bytes())
+        })?;
+        Ok(Self::open(path)?.0)
+    }
+
+    /// Opens a store to go on with it; every frame is checked, a torn end is cut off and reported.
+    ///
+    /// # Errors
+    /// [`Error::Io`]; [`Error::Damaged`] if this is no store, or a frame before the last does not match its checksum.
+    pub fn open(path: &Path) -> Result<(Self, Option<Torn>), Error> {
+        let mut file =
+            OpenOptions::new().read(true).write(true).open(path).map_err(Error::io(path, "open"))?;
+        let (header, start) = read_header(path, &mut file)?;
+        let mut frames = Self {
+            path: path.to_owned(),
+            file,
+            precision: header.precision,
+            fields: header.fields,
+            times: Vec::new(),
+            start,
+        };
+        let length = frames.file.metadata().map_err(Error::io(path, "read"))?.len();
+        let whole = (length - start) / frames.frame_size();
+        let mut bytes = vec![0; frames.frame_size() as usize];
+        for frame in 0..whole {
+            frames.file.read_exact(&mut bytes).map_err(Error::io(path, "read"))?;
+            let (body, crc) = bytes.split_at(bytes.len() - 4);
+            if crc == crc32fast::hash(body).to_le_bytes() {
+                frames.times.extend(Precision::F64.decode(&body[..8]));
+            } else if frame + 1 < whole {
+                let problem = format!(
+                    "frame {frame} of {whole} does not match its checksum: the file was altered or the disk failed; \
+                     start the run again without --resume"
+                );
+                return Err(Error::damaged(path, problem));
+            }
+        }
+        let dropped = length - frames.end();
+        if dropped == 0 {
+            return Ok((frames, None));
+        }
+        frames.file.set_len(frames.end()).map_err(Error::io(path, "shorten"))?;
+        let torn = Torn { path: path.to_owned(), bytes: dropped, kept: frames.times.len() };
+        Ok((frames, Some(torn)))
+    }
+
+    /// Appends the frame at `time`, one slice per field in the order of [`Frames::fields`], and syncs it to disk.
+    ///
+    /// # Errors
+    /// [`Error::Invalid`] if number or lengths of the slices differ from the fields, or `time` is not later than the last;
+    /// [`Error::Io`] if the disk refuses: the store then ends with the frame before, as if this one had not been tried.
+    pub fn append(&mut self, time: f64, values: &[&[f64]]) -> Result<(), Error> {
+        if values.len() != self.fields.len()
+            || self.fields.iter().zip(values).any(|(f, v)| f.length != v.len())
+        {
+            let found: Vec<_> = values.iter().map(|v| v.len()).collect();
+            let problem = format!("a frame has lengths {found:?}, the fields are {:?}", self.fields);
+            return Err(Error::invalid(&self.path, problem));
+        }
+        if self.times.last().is_some_and(|&last| !(last < time)) {
+            let problem = format!("a frame at time {time} cannot follow the one at {:?}", self.times.last());
+            return Err(Error::invalid(&self.path, problem));
+        }
+        let mut bytes = time.to_le_bytes().to_vec();
+        values.iter().for_each(|values| self.precision.encode(values, &mut bytes));
+        bytes.extend(crc32fast::hash(&bytes).to_le_bytes());
+        let end = self.end();
+        let write = |file: &mut File| -> io::Result<()> {
+            file.seek(SeekFrom::Start(end))?;
+            file.write_all(&bytes)?;
+            file.sync_data()
+        };
+        if let Err(refused) = write(&mut self.file) {
+            let _ = self.file.set_len(end); // if this fails too, `open` drops the torn end
+            return Err(Error::io(&self.path, "write")(refused));
+        }
+        self.times.push(time);
+        Ok(())
+    }
+
+    /// Drops the frames later than `time`, those after the checkpoint that a run goes on from; returns how many.
+    ///
+    /// # Errors
+    /// [`Error::Io`] if the file cannot be shortened.
+    pub fn truncate_to(&mut self, time: f64) -> Result<usize, Error> {
+        let before = self.times.len();
+        self.times.truncate(self.times.partition_point(|&t| t <= time));
+        self.file
+            .set_len(self.end())
+            .and_then(|()| self.file.sync_all())
+            .map_err(Error::io(&self.path, "shorten"))?;
+        Ok(before - self.times.len())
+    }
+
+    /// Field number `field` of frame number `frame`, as 64-bit numbers.
+    ///
+    /// # Errors
+    /// [`Error::Io`] if it cannot be read, also for a frame that is not there.
+    ///
+    /// # Panics
+    /// If `field` is not a number of [`Frames::fields`].
+    pub fn read(&mut self, frame: usize, field: usize) -> Result<Vec<f64>, Error> {
+        let width = self.precision.width();
+        let before: usize = self.fields[..field].iter().map(|f| f.length * width).sum();
+        let mut bytes = vec![0; self.fields[field].length * width];
+        let offset = self.start + frame as u64 * self.frame_size() + 8 + before as u64;
+        self.file
+            .seek(SeekFrom::Start(offset))
+            .and_then(|_| self.file.read_exact(&mut bytes))
+            .map_err(Error::io(&self.path, "read"))?;
+        Ok(self.precision.decode(&bytes))
+    }
+
+    /// The number of the field called `name`.
+    #[must_use]
+    pub fn position(&self, name: &str) -> Option<usize> {
+        self.fields.iter().position(|field| field.name == name)
+    }
+
+    /// Names and lengths of the fields, in the order of the file.
+    #[must_use]
+    pub fn fields(&self) -> &[Field] {
+        &self.fields
+    }
+
+    /// The times of the complete frames, rising.
+    #[must_use]
+    pub fn times(&self) -> &[f64] {
+        &self.times
+    }
+
+    /// The precision of the fields on disk (times are always f64).
+    #[must_use]
+    pub fn precision(&self) -> Precision {
+        self.precision
+    }
+
+    /// Where the store lies.
+    #[must_use]
+    pub fn path(&self) -> &Path {
+        &self.path
+    }
+
+    fn frame_size(&self) -> u64 {
+        let numbers: usize = self.fields.iter().map(|field| field.length).sum();
+        (8 + numbers * self.precision.width() + 4) as u64
+    }
+
+    fn end(&self) -> u64 {
+        self.start + self.times.len() as u64 * self.frame_size()
+    }
+}
+
+fn read_header(path: &Path, file: &mut File) -> Result<(Header, u64), Error> {
+    let alien = || Error::damaged(path, "this is not a store of frames that this version of granflow writes");
+    let mut lead = [0; MAGIC.len() + 4];
+    file.read_exact(&mut lead).map_err(|_| alien())?;
+    let (magic, length) = lead.split_at(MAGIC.len());
+    let length = length.iter().rev().fold(0, |sum, &byte| sum << 8 | u64::from(byte));
+    if magic != MAGIC || length > 1 << 20 {
+        return Err(alien());
+    }
+    let mut bytes = vec![0; length as usize + 4];
+    file.read_exact(&mut bytes).map_err(|_| alien())?;
+    let (header, crc) = bytes.split_at(length as usize);
+    if crc != crc32fast::hash(header).to_le_bytes() {
+        return Err(Error::damaged(
+            path,
+            "its header does not match its checksum; start the run again without --resume",
+        ));
+    }
+    let header = serde_json::from_slice(header).map_err(|_| alien())?;
+    Ok((header, (lead.len() + bytes.len()) as u64))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::fs;
+
+    fn fields() -> Vec<Field> {
+        vec![Field { name: "thickness".into(), length: 3 }, Field { name: "velocity_x".into(), length: 2 }]
+    }
+
+    fn three(path: &Path) -> Frames {
+        let mut frames = Frames::create(path, Precision::F64, fields()).unwrap();
+        for step in 0..3 {
+            let t = f64::from(step);
+            frames.append(t, &[&[t, f64::NAN, -0.0], &[t / 3.0, 1e-310]]).unwrap();
+        }
+        frames
+    }
+
+    #[test]
+    fn every_bit_comes_back() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("frames");
+        drop(three(&path));
+        let (mut frames, torn) = Frames::open(&path).unwrap();
+        assert_eq!((torn, frames.times()), (None, &[0.0, 1.0, 2.0][..]));
+        let bits = |values: Vec<f64>| values.into_iter().map(f64::to_bits).collect::<Vec<_>>();
+        assert_eq!(bits(frames.read(2, 0).unwrap()), bits(vec![2.0, f64::NAN, -0.0]));
+        assert_eq!(frames.read(1, frames.position("velocity_x").unwrap()).unwrap(), [1.0 / 3.0, 1e-310]);
+        assert!(frames.read(3, 0).is_err());
+    }
+
+    #[test]
+    fn a_torn_last_frame_is_dropped_with_a_warning_and_the_store_goes_on() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("frames");
+        let end = three(&path).end();
+        for cut in [1, 30, 51] {
+            OpenOptions::new().write(true).open(&path).unwrap().set_len(end - cut).unwrap();
+            let (mut frames, torn) = Frames::open(&path).unwrap();
+            assert_eq!(torn, Some(Torn { path: path.clone(), bytes: 52 - cut, kept: 2 }));
+            frames.append(2.0, &[&[7.0; 3], &[8.0; 2]]).unwrap();
+        }
+        let (mut frames, torn) = Frames::open(&path).unwrap();
+        assert_eq!((torn, frames.read(2, 1).unwrap()), (None, vec![8.0; 2]));
+    }
+
+    #[test]
+    fn a_wrong_checksum_drops_the_last_frame_but_refuses_an_earlier_one() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("frames");
+        let end = three(&path).end() as usize;
+        let sound = fs::read(&path).unwrap();
+        let damage = |at: usize| {
+            let mut bytes = sound.clone();
+            bytes[at] ^= 1;
+            fs::write(&path, bytes).unwrap();
+            Frames::open(&path)
+        };
+        assert_eq!(damage(end - 10).unwrap().1.unwrap().kept, 2);
+        let message = damage(end - 100).unwrap_err().to_string();
+        assert!(message.contains("frame 1 of 3"), "{message}");
+        assert!(damage(25).unwrap_err().to_string().contains("header"));
+        assert!(damage(3).unwrap_err().to_string().contains("not a store"));
+    }
+
+    #[test]
+    fn truncating_goes_back_to_the_checkpoint() {
+        let folder = tempfile::tempdir().unwrap();
+        let mut frames = three(&folder.path().join("frames"));
+        assert_eq!(frames.truncate_to(1.0).unwrap(), 1);
+        assert_eq!(Frames::open(frames.path()).unwrap().0.times(), [0.0, 1.0]);
+    }
+
+    #[test]
+    fn wrong_shapes_and_times_are_refused() {
+        let folder = tempfile::tempdir().unwrap();
+        let mut frames = three(&folder.path().join("frames"));
+        assert!(frames.append(3.0, &[&[0.0; 3], &[0.0; 3]]).is_err());
+        assert!(frames.append(3.0, &[&[0.0; 3]]).is_err());
+        assert!(frames.append(2.0, &[&[0.0; 3], &[0.0; 2]]).is_err());
+        assert!(frames.append(f64::NAN, &[&[0.0; 3], &[0.0; 2]]).is_err());
+        assert_eq!(frames.times().len(), 3);
+    }
+}

@@ -1,0 +1,261 @@
+//! The ledger `mass.csv`: where the mass is at every output instant, and the sums it rests on.
+
+use super::{Error, whole_file};
+use std::fs::{self, OpenOptions};
+use std::io::Write;
+use std::path::{Path, PathBuf};
+
+/// The columns of the file, in order.
+pub const COLUMNS: [&str; 15] = [
+    "time",
+    "step",
+    "mass",
+    "mass_in",
+    "mass_out",
+    "mass_out_left",
+    "mass_out_right",
+    "mass_out_bottom",
+    "mass_out_top",
+    "mass_out_nodata",
+    "mass_error",
+    "wet_cells",
+    "moving_cells",
+    "max_speed",
+    "kinetic_energy",
+];
+
+/// One line of the ledger; masses are totals since the start, in the case's units (m³ on terrain).
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Entry {
+    /// Simulated time.
+    pub time: f64,
+    /// Steps done.
+    pub step: u64,
+    /// Mass on the grid.
+    pub mass: f64,
+    /// Mass that was released or poured on.
+    pub mass_in: f64,
+    /// What left over the sides and into nodata: left, right, bottom, top, nodata.
+    pub out: [f64; 5],
+    /// (mass - `mass_in` + mass out - mass at the start) / (mass at the start + `mass_in`).
+    pub mass_error: f64,
+    /// Cells that hold mass above a film.
+    pub wet_cells: u64,
+    /// Cells that move.
+    pub moving_cells: u64,
+    /// Largest speed.
+    pub max_speed: f64,
+    /// Kinetic energy per density.
+    pub kinetic_energy: f64,
+}
+
+impl Entry {
+    /// All that left: the sum over the sides and nodata.
+    #[must_use]
+    pub fn mass_out(&self) -> f64 {
+        sum(self.out)
+    }
+
+    fn line(&self) -> String {
+        let [left, right, bottom, top, nodata] = self.out;
+        format!(
+            "{:?},{},{:?},{:?},{:?},{left:?},{right:?},{bottom:?},{top:?},{nodata:?},{:?},{},{},{:?},{:?}\n",
+            self.time,
+            self.step,
+            self.mass,
+            self.mass_in,
+            self.mass_out(),
+            self.mass_error,
+            self.wet_cells,
+            self.moving_cells,
+            self.max_speed,
+            self.kinetic_energy,
+        )
+    }
+
+    fn parse(line: &str) -> Option<Self> {
+        let cells: Vec<_> = line.split(',').collect();
+        if cells.len() != COLUMNS.len() {
+            return None;
+        }
+        let number = |column: usize| cells[column].parse::<f64>().ok();
+        let count = |column: usize| cells[column].parse::<u64>().ok();
+        Some(Self {
+            time: number(0)?,
+            step: count(1)?,
+            mass: number(2)?,
+            mass_in: number(3)?,
+            out: [number(5)?, number(6)?, number(7)?, number(8)?, number(9)?],
+            mass_error: number(10)?,
+            wet_cells: count(11)?,
+            moving_cells: count(12)?,
+            max_speed: number(13)?,
+            kinetic_energy: number(14)?,
+        })
+    }
+}
+
+/// The ledger on disk and in memory; a line is appended by one write, so the file is readable at every instant.
+#[derive(Debug)]
+pub struct Ledger {
+    path: PathBuf,
+    entries: Vec<Entry>,
+}
+
+impl Ledger {
+    /// Starts a ledger with no lines at `path`, over an older one.
+    ///
+    /// # Errors
+    /// [`Error::Io`] if the file cannot be written.
+    pub fn create(path: &Path) -> Result<Self, Error> {
+        let ledger = Self { path: path.to_owned(), entries: Vec::new() };
+        ledger.rewrite()?;
+        Ok(ledger)
+    }
+
+    /// Reads a ledger back to go on with it; a torn last line is dropped.
+    ///
+    /// # Errors
+    /// [`Error::Io`]; [`Error::Damaged`] naming the first line that cannot be read.
+    pub fn open(path: &Path) -> Result<Self, Error> {
+        let text = fs::read_to_string(path).map_err(Error::io(path, "read"))?;
+        let mut lines = text.split_inclusive('\n').enumerate();
+        if lines.next().map(|(_, line)| line.trim_end()) != Some(&COLUMNS.join(",")) {
+            return Err(Error::damaged(path, format!("line 1 should be the header {}", COLUMNS.join(","))));
+        }
+        let mut entries = Vec::new();
+        let mut torn = false;
+        for (number, line) in lines {
+            match line.strip_suffix('\n').map(|line| line.trim_end_matches('\r')) {
+                None => torn = true, // only the last line can lack its end
+                Some(line) => entries.push(Entry::parse(line).ok_or_else(|| {
+                    Error::damaged(path, format!("line {} is no line of a ledger: {line:?}", number + 1))
+                })?),
+            }
+        }
+        let ledger = Self { path: path.to_owned(), entries };
+        if torn {
+            ledger.rewrite()?;
+        }
+        Ok(ledger)
+    }
+
+    /// Appends a line.
+    ///
+    /// # Errors
+    /// [`Error::Io`]; on a full disk the file keeps the lines it had.
+    pub fn append(&mut self, entry: Entry) -> Result<(), Error> {
+        let mut file =
+            OpenOptions::new().append(true).open(&self.path).map_err(Error::io(&self.path, "open"))?;
+        let before = file.metadata().map_err(Error::io(&self.path, "read"))?.len();
+        if let Err(refused) = file.write_all(entry.line().as_bytes()) {
+            let _ = file.set_len(before); // if this fails too, `open` drops the torn line
+            return Err(Error::io(&self.path, "write")(refused));
+        }
+        self.entries.push(entry);
+        Ok(())
+    }
+
+    /// Drops the lines later than `time`, those after the checkpoint that a run goes on from; returns how many.
+    ///
+    /// # Errors
+    /// [`Error::Io`]; the file then keeps all its lines.
+    pub fn truncate_to(&mut self, time: f64) -> Result<usize, Error> {
+        let before = self.entries.len();
+        self.entries.retain(|entry| entry.time <= time);
+        self.rewrite()?;
+        Ok(before - self.entries.len())
+    }
+
+    /// The lines, in the order they were written.
+    #[must_use]
+    pub fn entries(&self) -> &[Entry] {
+        &self.entries
+    }
+
+    fn rewrite(&self) -> Result<(), Error> {
+        whole_file(&self.path, |out| {
+            writeln!(out, "{}", COLUMNS.join(","))?;
+            self.entries.iter().try_for_each(|entry| out.write_all(entry.line().as_bytes()))
+        })
+    }
+}
+
+/// The sum of `values` in their order, with Neumaier's compensation: its error does not grow with their number.
+///
+/// A. Neumaier, Rundungsfehleranalyse einiger Verfahren zur Summation endlicher Summen, ZAMM 54 (1974), algorithm IV.
+#[must_use]
+pub fn sum(values: impl IntoIterator<Item = f64>) -> f64 {
+    let (mut sum, mut lost) = (0.0_f64, 0.0_f64);
+    for value in values {
+        let next = sum + value;
+        lost += if sum.abs() >= value.abs() { (sum - next) + value } else { (value - next) + sum };
+        sum = next;
+    }
+    if sum.is_finite() { sum + lost } else { sum }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn entry(step: u64) -> Entry {
+        Entry {
+            time: step as f64 / 3.0,
+            step,
+            mass: 0.1,
+            mass_in: 1e300,
+            out: [1e-17, 2.0, 0.0, f64::NAN, -0.0],
+            wet_cells: 12,
+            max_speed: f64::INFINITY,
+            ..Entry::default()
+        }
+    }
+
+    #[test]
+    fn lines_come_back_and_a_torn_one_is_dropped() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("mass.csv");
+        let mut ledger = Ledger::create(&path).unwrap();
+        (0..4).for_each(|step| ledger.append(entry(step)).unwrap());
+        let read = Ledger::open(&path).unwrap();
+        assert_eq!(format!("{:?}", read.entries()), format!("{:?}", ledger.entries()));
+        let text = fs::read_to_string(&path).unwrap();
+        assert!(text.starts_with("time,step,mass,mass_in,mass_out,") && text.lines().count() == 5);
+        fs::write(&path, &text[..text.len() - 5]).unwrap();
+        let mut read = Ledger::open(&path).unwrap();
+        assert_eq!(read.entries().len(), 3);
+        read.append(entry(3)).unwrap();
+        assert_eq!(fs::read_to_string(&path).unwrap(), text);
+    }
+
+    #[test]
+    fn truncating_goes_back_to_the_checkpoint() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("mass.csv");
+        let mut ledger = Ledger::create(&path).unwrap();
+        (0..4).for_each(|step| ledger.append(entry(step)).unwrap());
+        assert_eq!(ledger.truncate_to(entry(1).time).unwrap(), 2);
+        assert_eq!(Ledger::open(&path).unwrap().entries().last().unwrap().step, 1);
+    }
+
+    #[test]
+    fn a_foreign_line_is_named() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("mass.csv");
+        fs::write(&path, format!("{}\n1,2,3\n", COLUMNS.join(","))).unwrap();
+        assert!(Ledger::open(&path).unwrap_err().to_string().contains("line 2"));
+        fs::write(&path, "a,b\n").unwrap();
+        assert!(Ledger::open(&path).unwrap_err().to_string().contains("line 1"));
+    }
+
+    #[test]
+    fn the_sum_keeps_what_plain_addition_loses() {
+        assert_eq!(sum([1.0, 1e100, 1.0, -1e100]), 2.0);
+        assert_eq!(sum(std::iter::repeat_n(0.1, 1_000_000)), 100_000.0);
+        assert_ne!(std::iter::repeat_n(0.1, 1_000_000).sum::<f64>(), 100_000.0);
+        assert_eq!(sum([1.0, f64::INFINITY]), f64::INFINITY);
+        assert!(sum([1.0, f64::NAN]).is_nan());
+        assert_eq!(sum([]), 0.0);
+    }
+}

@@ -1,0 +1,365 @@
+//! The HTML pages: `report.html` of a run on terrain and `index.html` of `reproduce` and `verify`.
+//!
+//! Each is one self-contained page, figures inlined, that prints well and needs no script.
+
+use super::base64::base64;
+use super::ledger::Entry;
+use super::summary::Summary;
+use super::tables::{Expected, Measure, Row};
+use super::{Error, whole_file};
+use maud::{DOCTYPE, Markup, PreEscaped, html};
+use std::fs;
+use std::path::{Path, PathBuf};
+
+/// The ledger on a page shows at most so many lines; the file has them all.
+const LEDGER_LINES: usize = 40;
+
+const STYLE: &str = include_str!("report.css");
+
+/// A figure on disk and what stands below it.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Figure {
+    /// Short name, the alternative text of the picture.
+    pub name: String,
+    /// What one sees, with units.
+    pub caption: String,
+    /// The PNG.
+    pub path: PathBuf,
+}
+
+/// A row of the key figures.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct KeyFigure {
+    /// What it is.
+    pub name: String,
+    /// Its value with unit.
+    pub value: String,
+}
+
+/// The page of one run.
+#[derive(Debug, Clone, Copy)]
+pub struct Report<'a> {
+    /// The run in numbers.
+    pub summary: &'a Summary,
+    /// What else belongs into the table of key figures.
+    pub more: &'a [KeyFigure],
+    /// What the user should know before trusting the numbers.
+    pub warnings: &'a [String],
+    /// The pictures, in order.
+    pub figures: &'a [Figure],
+    /// The whole text of the case.
+    pub case: &'a str,
+    /// The lines of `mass.csv`.
+    pub ledger: &'a [Entry],
+}
+
+/// A part of an index page.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Section {
+    /// Heading.
+    pub title: String,
+    /// One paragraph each.
+    pub text: Vec<String>,
+    /// The pictures, in order.
+    pub figures: Vec<Figure>,
+}
+
+/// The key figures of a run on terrain, in SI units, with a dash for what does not apply.
+#[must_use]
+pub fn key_figures(summary: &Summary) -> Vec<KeyFigure> {
+    let figure = |name: &str, value: Option<f64>, unit: &str| KeyFigure {
+        name: name.into(),
+        value: match value.filter(|value| value.is_finite()) {
+            Some(value) => format!("{}{unit}", readable(value)),
+            None => "–".into(),
+        },
+    };
+    let reason = KeyFigure { name: "Ended because".into(), value: summary.stop_reason.to_string() };
+    vec![
+        figure("Volume at the start", Some(summary.mass_initial), " m³"),
+        figure("Volume at the end", Some(summary.mass_final), " m³"),
+        figure("Runout", summary.runout, " m"),
+        figure("Reach angle", summary.reach_angle, "°"),
+        reason,
+        figure("Stopping time", summary.stopping_time, " s"),
+        figure("Simulated time", Some(summary.time), " s"),
+        figure("Largest speed", Some(summary.max_speed), " m/s"),
+        figure("Largest peak pressure", summary.extra("peak_pressure_max"), " kPa"),
+        figure("Share of films", Some(summary.film_share() * 100.0), " %"),
+        figure("Left over the edges", Some(summary.mass_out), " m³"),
+        figure("Mass error (relative)", Some(summary.mass_error), ""),
+    ]
+}
+
+/// Writes `report.html`.
+///
+/// # Errors
+/// [`Error::Io`] if the page cannot be written or a figure not read.
+pub fn write_report(path: &Path, report: Report) -> Result<(), Error> {
+    let Report { summary, more, warnings, figures, case, ledger } = report;
+    let body = html! {
+        p.lead {
+            (summary.model) ", " (summary.scheme) ", " (summary.cells) " cells, " (summary.steps) " steps, "
+            (readable(summary.wall_seconds)) " s on " (summary.threads) " threads, granflow " (summary.version)
+        }
+        @for warning in warnings { p.warning role="note" { strong { "Note: " } (warning) } }
+        h2 { "Key figures" }
+        table.key {
+            tbody {
+                @for KeyFigure { name, value } in key_figures(summary).iter().chain(more) {
+                    tr { th scope="row" { (name) } td { (value) } }
+                }
+            }
+        }
+        h2 { "Figures" }
+        @for figure in figures { (inline(figure)?) }
+        h2 { "Mass ledger" }
+        (ledger_table(ledger))
+        h2 { "Case" }
+        pre { code { (case) } }
+    };
+    write_page(path, &summary.title, &body)
+}
+
+/// Writes `index.html`: the verdict, the table of all rows with the failing ones marked, then the sections.
+///
+/// # Errors
+/// [`Error::Io`] if the page cannot be written or a figure not read.
+pub fn write_index(path: &Path, title: &str, rows: &[Row], sections: &[Section]) -> Result<(), Error> {
+    let failing = rows.iter().filter(|row| !row.pass()).count();
+    let body = html! {
+        @if failing > 0 {
+            p.warning role="note" { strong { (failing) " of " (rows.len()) " rows fail." } }
+        } @else if !rows.is_empty() {
+            p.lead { "All " (rows.len()) " rows are within their tolerances." }
+        }
+        @if !rows.is_empty() { (rows_table(rows)) }
+        @for section in sections {
+            section {
+                h2 { (section.title) }
+                @for paragraph in &section.text { p { (paragraph) } }
+                @for figure in &section.figures { (inline(figure)?) }
+            }
+        }
+    };
+    write_page(path, title, &body)
+}
+
+fn write_page(path: &Path, title: &str, body: &Markup) -> Result<(), Error> {
+    let page = html! {
+        (DOCTYPE)
+        html lang="en" {
+            head {
+                meta charset="utf-8";
+                meta name="viewport" content="width=device-width, initial-scale=1";
+                meta name="generator" content=(concat!("granflow ", env!("CARGO_PKG_VERSION")));
+                title { (title) }
+                style { (PreEscaped(STYLE)) }
+            }
+            body { main { h1 { (title) } (body) } }
+        }
+    };
+    whole_file(path, |out| out.write_all(page.into_string().as_bytes()))
+}
+
+fn inline(figure: &Figure) -> Result<Markup, Error> {
+    let picture = fs::read(&figure.path).map_err(Error::io(&figure.path, "read"))?;
+    let source = format!("data:image/png;base64,{}", base64(&picture));
+    Ok(html! {
+        figure {
+            img src=(source) alt=(figure.name);
+            figcaption { strong { (figure.name) "." } " " (figure.caption) }
+        }
+    })
+}
+
+fn rows_table(rows: &[Row]) -> Markup {
+    html! {
+        div.wide { table.rows {
+            thead { tr {
+                @for head in ["", "Name", "Quantity", "Published | exact", "Computed", "Tolerance"] { th scope="col" { (head) } }
+            } }
+            tbody {
+                @for row in rows {
+                    tr.fail[!row.pass()] {
+                        td.verdict { @if row.pass() { "✓ pass" } @else { "✗ FAIL" } }
+                        td { (row.name) }
+                        td { (row.quantity) }
+                        td.number { (readable(row.expected.value())) " " small { (origin(row.expected)) } }
+                        td.number { (readable(row.computed)) }
+                        td.number { (tolerance(row)) }
+                    }
+                }
+            }
+        } }
+    }
+}
+
+fn origin(expected: Expected) -> &'static str {
+    match expected {
+        Expected::Published(_) => "published",
+        Expected::Exact(_) => "exact",
+    }
+}
+
+fn tolerance(row: &Row) -> String {
+    let size = readable(row.tolerance);
+    match row.measure {
+        Measure::Absolute => format!("± {size}"),
+        Measure::Relative => format!("± {} %", readable(100.0 * row.tolerance)),
+        Measure::AtMost => format!("at most + {size}"),
+        Measure::AtLeast => format!("at least − {size}"),
+    }
+}
+
+fn ledger_table(ledger: &[Entry]) -> Markup {
+    let every = ledger.len().div_ceil(LEDGER_LINES).max(1);
+    let shown = ledger.iter().enumerate().filter(|(line, _)| line % every == 0 || line + 1 == ledger.len());
+    html! {
+        @if every > 1 { p { "One line in " (every) " and the last; mass.csv has all " (ledger.len()) "." } }
+        div.wide { table.rows {
+            thead { tr {
+                @for head in ["Time", "Step", "Mass", "In", "Out", "Error", "Wet cells", "Moving", "Largest speed", "Kinetic energy"] {
+                    th scope="col" { (head) }
+                }
+            } }
+            tbody {
+                @for (_, line) in shown {
+                    tr {
+                        td.number { (readable(line.time)) }
+                        td.number { (line.step) }
+                        @for number in [line.mass, line.mass_in, line.mass_out(), line.mass_error] {
+                            td.number { (readable(number)) }
+                        }
+                        td.number { (line.wet_cells) }
+                        td.number { (line.moving_cells) }
+                        td.number { (readable(line.max_speed)) }
+                        td.number { (readable(line.kinetic_energy)) }
+                    }
+                }
+            }
+        } }
+    }
+}
+
+/// A number for people: five significant digits, powers of ten only where the number is very large or small.
+fn readable(value: f64) -> String {
+    if value == 0.0 || !value.is_finite() {
+        return value.abs().to_string();
+    }
+    let rounded = format!("{value:.4e}");
+    let (digits, exponent) = rounded.split_once('e').unwrap_or((&rounded, "0"));
+    let trim = |text: &str| text.trim_end_matches('0').trim_end_matches('.').to_owned();
+    match exponent.parse::<usize>() {
+        Ok(power @ 4..7) => format!("{value:.0$}", 4_usize.saturating_sub(power)),
+        Ok(power @ 0..4) => trim(&format!("{value:.0$}", 4 - power)),
+        _ if value.abs() >= 1e-3 && value.abs() < 1.0 => trim(&format!("{value:.6}")),
+        _ => format!("{}e{exponent}", if digits.contains('.') { trim(digits) } else { digits.into() }),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::output::summary::tests::sample;
+
+    fn figure(folder: &Path) -> Figure {
+        let path = folder.join("deposit.png");
+        fs::write(&path, b"\x89PNG").unwrap();
+        Figure { name: "Deposit".into(), caption: "Thickness <in> m & more".into(), path }
+    }
+
+    #[test]
+    fn the_report_holds_everything_and_needs_nothing() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("report.html");
+        let figures = [figure(folder.path())];
+        let mut summary = sample();
+        summary.title = "A <slide> & more".into();
+        let ledger: Vec<_> =
+            (0..100).map(|step| Entry { step, time: step as f64, ..Entry::default() }).collect();
+        let report = Report {
+            summary: &summary,
+            more: &[KeyFigure { name: "Cells steeper than 60°".into(), value: "746".into() }],
+            warnings: &["the film holds 0.6 %".into()],
+            figures: &figures,
+            case: "x = \"<b>\"",
+            ledger: &ledger,
+        };
+        write_report(&path, report).unwrap();
+        let page = fs::read_to_string(&path).unwrap();
+        for part in [
+            "<title>A &lt;slide&gt; &amp; more</title>",
+            "src=\"data:image/png;base64,iVBORw==\" alt=\"Deposit\"",
+            "Thickness &lt;in&gt; m &amp; more",
+            "at rest",
+            "746",
+            "the film holds 0.6 %",
+            "x = &quot;&lt;b&gt;&quot;",
+            "One line in 3 and the last",
+            "<td>8 m³</td>",
+            "<td>–</td>",
+        ] {
+            assert!(page.contains(part), "{part}");
+        }
+        assert!(!page.contains("http") && !page.contains("<script") && !page.contains("NaN"));
+    }
+
+    #[test]
+    fn failing_rows_are_marked() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("index.html");
+        let row = |computed| {
+            Row::new("Table 1", "mass", Expected::Published(1.5), computed, Measure::Relative, 0.05)
+        };
+        let sections = [Section {
+            title: "Silo".into(),
+            text: vec!["Text.".into()],
+            figures: vec![figure(folder.path())],
+        }];
+        write_index(&path, "Reproduced", &[row(1.5), row(2.0)], &sections).unwrap();
+        let page = fs::read_to_string(&path).unwrap();
+        assert!(
+            page.contains("1 of 2 rows fail")
+                && page.contains("<tr class=\"fail\">")
+                && page.contains("✗ FAIL")
+        );
+        assert!(page.contains("± 5 %") && page.contains("<small>published</small>"));
+        write_index(&path, "Reproduced", &[row(1.5)], &[]).unwrap();
+        assert!(fs::read_to_string(&path).unwrap().contains("All 1 rows"));
+    }
+
+    #[test]
+    fn a_missing_figure_is_named() {
+        let folder = tempfile::tempdir().unwrap();
+        let mut figure = figure(folder.path());
+        figure.path = folder.path().join("absent.png");
+        let sections = [Section { title: String::new(), text: vec![], figures: vec![figure] }];
+        let message =
+            write_index(&folder.path().join("index.html"), "x", &[], &sections).unwrap_err().to_string();
+        assert!(message.contains("absent.png"), "{message}");
+    }
+
+    #[test]
+    fn numbers_are_readable() {
+        let cases = [
+            (0.0, "0"),
+            (-0.0, "0"),
+            (8.0, "8"),
+            (-1.5, "-1.5"),
+            (1377.04, "1377"),
+            (1377.46, "1377.5"),
+            (99_999.7, "100000"),
+            (41_261.0, "41261"),
+            (178_435.6, "178436"),
+            (1e7, "1e7"),
+            (1.25e8, "1.25e8"),
+            (0.0126, "0.0126"),
+            (1e-16, "1e-16"),
+            (f64::NAN, "NaN"),
+        ];
+        for (value, text) in cases {
+            assert_eq!(readable(value), text);
+        }
+    }
+}

@@ -1,0 +1,226 @@
+//! `summary.json`: a run in thirty numbers.
+
+use super::{Error, whole_file};
+use serde::{Deserialize, Deserializer, Serialize};
+use std::fmt;
+use std::fs;
+use std::io;
+use std::path::Path;
+
+/// Why a run ended; `summary.json` holds it in snake case, as in "at_rest".
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum StopReason {
+    /// Every cell is at rest and admissible: the mass has come to rest.
+    AtRest,
+    /// Nothing changes any more.
+    Steady,
+    /// The end time of the case was reached.
+    EndTime,
+    /// The number of steps of the case was done.
+    Steps,
+    /// The kinetic energy fell below the share of its peak that the case names.
+    KineticEnergy,
+    /// The largest speed fell below the case's `rest_speed`.
+    BelowSpeed,
+    /// The user interrupted it; `--resume` goes on.
+    Interrupted,
+}
+
+impl fmt::Display for StopReason {
+    fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
+        out.write_str(match self {
+            Self::AtRest => "at rest",
+            Self::Steady => "steady",
+            Self::EndTime => "end time reached",
+            Self::Steps => "number of steps done",
+            Self::KineticEnergy => "kinetic energy below its limit",
+            Self::BelowSpeed => "speed below its limit",
+            Self::Interrupted => "interrupted",
+        })
+    }
+}
+
+/// The keys of `summary.json` in their order; a number that is not finite or does not apply is `null`.
+///
+/// Units are the case's: scaled on a grid, SI on terrain, where mass means volume in m³.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Summary {
+    /// The case's title.
+    pub title: String,
+    /// The model, "savage_hutter" or "hadeler_kuttler".
+    pub model: String,
+    /// The scheme's name.
+    pub scheme: String,
+    /// Cells of the grid.
+    pub cells: u64,
+    /// Steps done.
+    pub steps: u64,
+    /// Simulated time at the end.
+    #[serde(deserialize_with = "number")]
+    pub time: f64,
+    /// Why the run ended.
+    pub stop_reason: StopReason,
+    /// When the mass came to rest, if it did.
+    pub stopping_time: Option<f64>,
+    /// Mass at the start.
+    #[serde(deserialize_with = "number")]
+    pub mass_initial: f64,
+    /// Mass at the end.
+    #[serde(deserialize_with = "number")]
+    pub mass_final: f64,
+    /// Mass released or poured on during the run.
+    #[serde(deserialize_with = "number")]
+    pub mass_in: f64,
+    /// Mass that left over the edges.
+    #[serde(deserialize_with = "number")]
+    pub mass_out: f64,
+    /// (final - initial - in + out) / (initial + in).
+    #[serde(deserialize_with = "number")]
+    pub mass_error: f64,
+    /// Mass in cells thinner than a film.
+    #[serde(deserialize_with = "number")]
+    pub film_volume: f64,
+    /// Largest speed at the end.
+    #[serde(deserialize_with = "number")]
+    pub max_speed_final: f64,
+    /// Largest speed of the run.
+    #[serde(deserialize_with = "number")]
+    pub max_speed: f64,
+    /// Horizontal length from the highest released cell to the farthest cell reached, where that is defined.
+    pub runout: Option<f64>,
+    /// Angle of that line below the horizontal, in degrees.
+    pub reach_angle: Option<f64>,
+    /// Seconds on the clock.
+    #[serde(deserialize_with = "number")]
+    pub wall_seconds: f64,
+    /// Cells times steps by seconds on the clock.
+    #[serde(deserialize_with = "number")]
+    pub cell_updates_per_second: f64,
+    /// Threads used.
+    pub threads: u64,
+    /// Version of granflow.
+    pub version: String,
+    /// What else is worth knowing, such as `peak_thickness_max`; further keys of the same JSON object, in alphabetical order.
+    #[serde(flatten)]
+    pub extra: serde_json::Map<String, serde_json::Value>,
+}
+
+impl Summary {
+    /// Adds a number beyond the fixed keys.
+    pub fn add(&mut self, key: &str, value: f64) {
+        self.extra.insert(key.into(), value.into()); // serde_json turns a number that is not finite into null
+    }
+
+    /// The number under a key beyond the fixed ones.
+    #[must_use]
+    pub fn extra(&self, key: &str) -> Option<f64> {
+        self.extra.get(key)?.as_f64()
+    }
+
+    /// Film volume by final mass, the share that a warning is due for above 0.5 %.
+    #[must_use]
+    pub fn film_share(&self) -> f64 {
+        if self.film_volume == 0.0 { 0.0 } else { self.film_volume / self.mass_final }
+    }
+
+    /// Writes the summary as indented JSON.
+    ///
+    /// # Errors
+    /// [`Error::Io`] if the file cannot be written.
+    pub fn write(&self, path: &Path) -> Result<(), Error> {
+        whole_file(path, |out| {
+            serde_json::to_writer_pretty(&mut *out, self).map_err(io::Error::from)?;
+            writeln!(out)
+        })
+    }
+
+    /// Reads a summary back; a null number comes back as NaN.
+    ///
+    /// # Errors
+    /// [`Error::Io`]; [`Error::Damaged`] with line and column of what is not a summary.
+    pub fn read(path: &Path) -> Result<Self, Error> {
+        let text = fs::read_to_string(path).map_err(Error::io(path, "read"))?;
+        serde_json::from_str(&text)
+            .map_err(|error| Error::damaged(path, format!("this is no summary of a run: {error}")))
+    }
+}
+
+fn number<'de, D: Deserializer<'de>>(from: D) -> Result<f64, D::Error> {
+    Ok(Option::deserialize(from)?.unwrap_or(f64::NAN))
+}
+
+#[cfg(test)]
+pub(super) mod tests {
+    use super::*;
+
+    pub(in crate::output) fn sample() -> Summary {
+        let mut summary = Summary {
+            title: "A silo breaks".into(),
+            model: "savage_hutter".into(),
+            scheme: "balanced".into(),
+            cells: 240,
+            steps: 10_000,
+            time: 10.0,
+            stop_reason: StopReason::AtRest,
+            stopping_time: Some(9.5),
+            mass_initial: 8.0,
+            mass_final: 8.0,
+            mass_in: 0.0,
+            mass_out: 0.0,
+            mass_error: 1e-16,
+            film_volume: 4e-3,
+            max_speed_final: 0.0,
+            max_speed: f64::NAN,
+            runout: None,
+            reach_angle: Some(f64::INFINITY),
+            wall_seconds: 1.5,
+            cell_updates_per_second: 1.6e6,
+            threads: 2,
+            version: "0.1.0".into(),
+            extra: serde_json::Map::new(),
+        };
+        summary.add("peak_thickness_max", 2.3);
+        summary.add("deposit_area", f64::NAN);
+        summary
+    }
+
+    #[test]
+    fn the_keys_are_those_of_the_contract_in_its_order() {
+        let text = serde_json::to_string_pretty(&sample()).unwrap();
+        let keys: Vec<_> =
+            text.lines().filter_map(|line| line.trim().strip_prefix('"')?.split('"').next()).collect();
+        assert_eq!(
+            keys.join(", "),
+            "title, model, scheme, cells, steps, time, stop_reason, stopping_time, mass_initial, mass_final, mass_in, \
+             mass_out, mass_error, film_volume, max_speed_final, max_speed, runout, reach_angle, wall_seconds, \
+             cell_updates_per_second, threads, version, deposit_area, peak_thickness_max"
+        );
+        for null in ["max_speed", "runout", "reach_angle", "deposit_area"] {
+            assert!(text.contains(&format!("\"{null}\": null")), "{null}");
+        }
+    }
+
+    #[test]
+    fn the_stop_reasons_are_spelt_as_the_contract_says() {
+        use StopReason::*;
+        let reasons = [AtRest, Steady, EndTime, Steps, KineticEnergy, BelowSpeed, Interrupted];
+        assert_eq!(
+            serde_json::to_string(&reasons).unwrap(),
+            r#"["at_rest","steady","end_time","steps","kinetic_energy","below_speed","interrupted"]"#
+        );
+    }
+
+    #[test]
+    fn it_comes_back_from_disk() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("summary.json");
+        sample().write(&path).unwrap();
+        let read = Summary::read(&path).unwrap();
+        assert!(read.max_speed.is_nan() && read.reach_angle.is_none());
+        assert_eq!((read.extra("peak_thickness_max"), read.extra("deposit_area")), (Some(2.3), None));
+        assert_eq!(read.film_share(), 5e-4);
+        fs::write(&path, "{\"title\": 3}").unwrap();
+        assert!(Summary::read(&path).unwrap_err().to_string().contains("line 1"));
+    }
+}
