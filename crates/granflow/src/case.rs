@@ -141,7 +141,8 @@ impl Case {
     pub fn parse_with(text: &str, source_name: &str, overrides: &[String]) -> Result<Self, CaseError> {
         let source = Source::read(source_name, text, overrides)?;
         let document = source.document()?;
-        if let Some(toml::de::DeValue::String(name)) = document.get_ref().get("model").map(toml::Spanned::get_ref)
+        if let Some(toml::de::DeValue::String(name)) =
+            document.get_ref().get("model").map(toml::Spanned::get_ref)
             && name == "hadeler_kuttler"
         {
             return Err(source
@@ -169,8 +170,9 @@ impl Case {
     pub fn load_with(path: &Path, overrides: &[String]) -> Result<Self, CaseError> {
         let name = path.display().to_string();
         let bytes = std::fs::read(path).map_err(|error| check::missing(path, &error, &name))?;
-        let text = String::from_utf8(bytes)
-            .map_err(|_| CaseError::unreadable(&name, "this is not UTF-8 text, so it is no case file".to_owned()))?;
+        let text = String::from_utf8(bytes).map_err(|_| {
+            CaseError::unreadable(&name, "this is not UTF-8 text, so it is no case file".to_owned())
+        })?;
         Self::parse_with(&text, &name, overrides)
     }
 
@@ -237,7 +239,10 @@ impl Case {
         let thickness = self.evaluate(grid, "thickness", Some(&initial.thickness))?;
         if let Some(cell) = thickness.iter().position(|h| *h < 0.0) {
             let message = format!("the thickness is {} at {}", thickness[cell], place(grid, cell));
-            return Err(self.source.fault("initial.thickness", message).help("a thickness is never negative; max(..., 0) cuts a formula off"));
+            return Err(self
+                .source
+                .fault("initial.thickness", message)
+                .help("a thickness is never negative; max(..., 0) cuts a formula off"));
         }
         Ok(InitialState {
             thickness,
@@ -248,10 +253,11 @@ impl Case {
 
     fn evaluate(&self, grid: &Grid, name: &str, quantity: Option<&Quantity>) -> Result<Vec<f64>, CaseError> {
         let key = format!("initial.{name}");
-        let values = quantity.unwrap_or(&Quantity::Constant(0.0)).on(grid, &self.folder()).map_err(|fault| {
-            let error = self.source.fault_in(&format!("{key}.{}", fault.key), fault.part, fault.message);
-            if fault.file { error.file() } else { error }
-        })?;
+        let values =
+            quantity.unwrap_or(&Quantity::Constant(0.0)).on(grid, &self.folder()).map_err(|fault| {
+                let error = self.source.fault_in(&format!("{key}.{}", fault.key), fault.part, fault.message);
+                if fault.file { error.file() } else { error }
+            })?;
         match values.iter().position(|value| !value.is_finite()) {
             None => Ok(values),
             Some(cell) => Err(self

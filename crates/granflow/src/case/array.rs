@@ -7,13 +7,15 @@ use std::path::Path;
 pub(super) fn read_array(path: &Path, [nx, ny]: [usize; 2]) -> Result<Vec<f64>, String> {
     let name = path.display();
     let bytes = fs::read(path).map_err(|error| format!("cannot read {name}: {error}"))?;
-    let (shape, values) = match path.extension().and_then(|end| end.to_str()).map(str::to_lowercase).as_deref() {
-        Some("npy") => read_npy(&bytes),
-        Some("csv" | "txt" | "dat") => read_text(&bytes),
-        _ => Err("its name must end in .npy, .csv, .txt or .dat".to_owned()),
-    }
-    .map_err(|error| format!("cannot use {name}: {error}"))?;
-    let fits = shape == [ny as u64, nx as u64] || (ny == 1 && values.len() == nx && shape.contains(&(nx as u64)));
+    let (shape, values) =
+        match path.extension().and_then(|end| end.to_str()).map(str::to_lowercase).as_deref() {
+            Some("npy") => read_npy(&bytes),
+            Some("csv" | "txt" | "dat") => read_text(&bytes),
+            _ => Err("its name must end in .npy, .csv, .txt or .dat".to_owned()),
+        }
+        .map_err(|error| format!("cannot use {name}: {error}"))?;
+    let fits =
+        shape == [ny as u64, nx as u64] || (ny == 1 && values.len() == nx && shape.contains(&(nx as u64)));
     if fits {
         return Ok(values);
     }
@@ -32,8 +34,9 @@ fn read_npy(bytes: &[u8]) -> Result<(Vec<u64>, Vec<f64>), String> {
     if let Ok(values) = file.into_vec::<f64>() {
         return Ok((shape, values));
     }
-    let values: Vec<f32> =
-        open()?.into_vec().map_err(|error| format!("{error}; save it as float64 or float32: h.astype(\"f8\")"))?;
+    let values: Vec<f32> = open()?
+        .into_vec()
+        .map_err(|error| format!("{error}; save it as float64 or float32: h.astype(\"f8\")"))?;
     Ok((shape, values.into_iter().map(f64::from).collect()))
 }
 
@@ -48,12 +51,17 @@ fn read_text(bytes: &[u8]) -> Result<(Vec<u64>, Vec<f64>), String> {
         }
         let before = values.len();
         for word in line.split([',', ';', ' ', '\t']).filter(|word| !word.is_empty()) {
-            let value: f64 = word.parse().map_err(|_| format!("line {}: `{word}` is not a number", number + 1))?;
+            let value: f64 =
+                word.parse().map_err(|_| format!("line {}: `{word}` is not a number", number + 1))?;
             values.push(value);
         }
         let found = values.len() - before;
         if *columns.get_or_insert(found) != found {
-            return Err(format!("line {} has {found} numbers, the lines before have {}", number + 1, columns.unwrap_or(0)));
+            return Err(format!(
+                "line {} has {found} numbers, the lines before have {}",
+                number + 1,
+                columns.unwrap_or(0)
+            ));
         }
         rows += 1;
     }
@@ -85,7 +93,8 @@ mod tests {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("h.npy");
         let mut buffer = Vec::new();
-        let mut writer = npyz::WriteOptions::new().default_dtype().shape(&[2, 3]).writer(&mut buffer).begin_nd().unwrap();
+        let mut writer =
+            npyz::WriteOptions::new().default_dtype().shape(&[2, 3]).writer(&mut buffer).begin_nd().unwrap();
         writer.extend([0.5f32, 1.5, 2.5, 3.5, 4.5, 5.5]).unwrap();
         writer.finish().unwrap();
         fs::write(&path, buffer).unwrap();

@@ -27,7 +27,13 @@ impl Case {
     }
 
     /// `value` must be a finite number that `fits`.
-    fn number(&self, key: &str, value: f64, fits: impl Fn(f64) -> bool, allowed: &str) -> Result<(), CaseError> {
+    fn number(
+        &self,
+        key: &str,
+        value: f64,
+        fits: impl Fn(f64) -> bool,
+        allowed: &str,
+    ) -> Result<(), CaseError> {
         if value.is_finite() && fits(value) {
             return Ok(());
         }
@@ -46,23 +52,45 @@ impl Case {
     fn check_place(&self) -> Result<(), CaseError> {
         let fault = |key: &str, message: &str, cure: &str| Err(self.fault(key, message, cure));
         match (&self.grid, &self.terrain) {
-            (None, None) => fault("", "the case has neither [grid] nor [terrain]", "add [grid] for a scaled case, [terrain] for a mountain; `granflow new --list` shows cases to start from"),
-            (Some(_), Some(_)) => fault("terrain", "the case has both [grid] and [terrain]", "keep one of them"),
+            (None, None) => fault(
+                "",
+                "the case has neither [grid] nor [terrain]",
+                "add [grid] for a scaled case, [terrain] for a mountain; `granflow new --list` shows cases to start from",
+            ),
+            (Some(_), Some(_)) => {
+                fault("terrain", "the case has both [grid] and [terrain]", "keep one of them")
+            }
             (Some(grid), None) => {
                 if self.initial.is_none() {
-                    return fault("initial", "a case with [grid] needs an [initial] thickness", "add for instance initial.thickness = 1.0");
+                    return fault(
+                        "initial",
+                        "a case with [grid] needs an [initial] thickness",
+                        "add for instance initial.thickness = 1.0",
+                    );
                 }
                 if !self.release.is_empty() {
-                    return fault("release", "[[release]] needs [terrain]", "on a grid write [initial] thickness instead");
+                    return fault(
+                        "release",
+                        "[[release]] needs [terrain]",
+                        "on a grid write [initial] thickness instead",
+                    );
                 }
                 self.check_grid(grid)
             }
             (None, Some(_)) => {
                 if self.initial.is_some() {
-                    return fault("initial", "[initial] needs [grid]", "on terrain write [[release]] instead");
+                    return fault(
+                        "initial",
+                        "[initial] needs [grid]",
+                        "on terrain write [[release]] instead",
+                    );
                 }
                 if self.release.is_empty() {
-                    return fault("release", "a case with [terrain] needs a [[release]]", "add [[release]] with polygons, raster or cap");
+                    return fault(
+                        "release",
+                        "a case with [terrain] needs a [[release]]",
+                        "add [[release]] with polygons, raster or cap",
+                    );
                 }
                 for (key, given) in [
                     ("epsilon", self.material.epsilon.is_some()),
@@ -70,7 +98,9 @@ impl Case {
                     ("eta", self.material.eta.is_some()),
                 ] {
                     if given {
-                        let message = format!("`{key}` has no meaning on terrain, where everything is in metres and seconds");
+                        let message = format!(
+                            "`{key}` has no meaning on terrain, where everything is in metres and seconds"
+                        );
                         return fault(&format!("material.{key}"), &message, "remove it");
                     }
                 }
@@ -86,14 +116,23 @@ impl Case {
             }
             if axis.from >= axis.to {
                 let message = format!("from = {} is not below to = {}", axis.from, axis.to);
-                return Err(self.fault(&format!("{key}.from"), message, "from is the low end of the grid, to the high end"));
+                return Err(self.fault(
+                    &format!("{key}.from"),
+                    message,
+                    "from is the low end of the grid, to the high end",
+                ));
             }
             if axis.cells < 3 {
                 let message = format!("found {} cells, expected at least 3", axis.cells);
                 return Err(self.source.fault(&format!("{key}.cells"), message));
             }
-            if !(axis.width() > 0.0 && axis.from + axis.width() > axis.from && axis.to - axis.width() < axis.to) {
-                return Err(self.source.fault(&format!("{key}.cells"), "the cells are too small to be told apart"));
+            if !(axis.width() > 0.0
+                && axis.from + axis.width() > axis.from
+                && axis.to - axis.width() < axis.to)
+            {
+                return Err(self
+                    .source
+                    .fault(&format!("{key}.cells"), "the cells are too small to be told apart"));
             }
             Ok(())
         };
@@ -125,7 +164,11 @@ impl Case {
         self.positive("material.density", material.density)?;
         self.not_negative("material.eta", material.eta)?;
         if self.terrain.is_some() && material.density.is_none() {
-            return Err(self.fault("material.density", "the key `density` is missing", "the pressure on terrain needs it: density = 200.0 (kg/m^3, dry snow), 1500.0 (debris)"));
+            return Err(self.fault(
+                "material.density",
+                "the key `density` is missing",
+                "the pressure on terrain needs it: density = 200.0 (kg/m^3, dry snow), 1500.0 (debris)",
+            ));
         }
         self.check_friction(&material.friction)?;
         self.check_slope()
@@ -136,13 +179,28 @@ impl Case {
         let key = |name: &str| format!("{at}.{name}");
         match law.written() {
             (Some(_), Some(_)) => {
-                let cure = format!("keep one of angle and mu = tan(angle); with --set replace the table: --set 'material.friction={{{}={{mu=0.3}}}}'", law.name());
+                let cure = format!(
+                    "keep one of angle and mu = tan(angle); with --set replace the table: --set 'material.friction={{{}={{mu=0.3}}}}'",
+                    law.name()
+                );
                 return Err(self.fault(&key("mu"), "both `angle` and `mu` are given", &cure));
             }
-            (None, None) => return Err(self.fault(&at, "neither `angle` nor `mu` is given", "add angle = \"25 deg\" or mu = 0.4")),
+            (None, None) => {
+                return Err(self.fault(
+                    &at,
+                    "neither `angle` nor `mu` is given",
+                    "add angle = \"25 deg\" or mu = 0.4",
+                ));
+            }
             (Some(angle), None) => {
                 let fits = |v: f64| (0.0..std::f64::consts::FRAC_PI_2).contains(&v);
-                self.number(&key("angle"), angle.radians(), fits, "an angle from 0 to below 90 deg (1.5708 rad)").map_err(|error| error.help(RADIANS))?;
+                self.number(
+                    &key("angle"),
+                    angle.radians(),
+                    fits,
+                    "an angle from 0 to below 90 deg (1.5708 rad)",
+                )
+                .map_err(|error| error.help(RADIANS))?;
             }
             (None, mu) => self.not_negative(&key("mu"), mu)?,
         }
@@ -163,7 +221,8 @@ impl Case {
     fn check_slope(&self) -> Result<(), CaseError> {
         let fits = |v: f64| v.abs() < std::f64::consts::FRAC_PI_2;
         let steep = |key: &str, value: f64| {
-            self.number(key, value, fits, "an angle between -90 deg and 90 deg (1.5708 rad)").map_err(|error| error.help(RADIANS))
+            self.number(key, value, fits, "an angle between -90 deg and 90 deg (1.5708 rad)")
+                .map_err(|error| error.help(RADIANS))
         };
         match &self.material.slope {
             None => return Ok(()),
@@ -184,7 +243,11 @@ impl Case {
             let (zeta, kappa) = (chute.zeta(x), chute.kappa(low, high));
             if !fits(zeta) || !kappa.is_finite() {
                 let message = format!("at x = {x} the slope is {zeta} rad and its curvature {kappa}");
-                return Err(self.fault("material.slope", message, "expected an angle between -90 deg and 90 deg and a finite curvature"));
+                return Err(self.fault(
+                    "material.slope",
+                    message,
+                    "expected an angle between -90 deg and 90 deg and a finite curvature",
+                ));
             }
         }
         Ok(())
@@ -193,7 +256,11 @@ impl Case {
     fn check_scheme(&self) -> Result<(), CaseError> {
         let scheme = &self.scheme;
         if scheme.step.is_some() && scheme.courant.is_some() {
-            return Err(self.fault("scheme.courant", "both `step` and `courant` are given", "keep step for a fixed step, courant for an adaptive one"));
+            return Err(self.fault(
+                "scheme.courant",
+                "both `step` and `courant` are given",
+                "keep step for a fixed step, courant for an adaptive one",
+            ));
         }
         self.positive("scheme.step", scheme.step)?;
         self.not_negative("scheme.film", scheme.film)?;
@@ -213,13 +280,20 @@ impl Case {
             return refuse("scheme.name", "works on a [grid] only, not on terrain");
         }
         if !matches!(self.material.friction, Friction::Coulomb(_)) {
-            return refuse(&format!("material.friction.{}", self.material.friction.name()), "knows Coulomb friction only");
+            return refuse(
+                &format!("material.friction.{}", self.material.friction.name()),
+                "knows Coulomb friction only",
+            );
         }
         if matches!(self.material.slope, Some(Slope::Profile(_))) {
             return refuse("material.slope", "works on a constant slope only");
         }
         if scheme.film.is_some() {
-            return Err(self.fault("scheme.film", format!("{name} knows no films"), "remove film; the published schemes are kept as published"));
+            return Err(self.fault(
+                "scheme.film",
+                format!("{name} knows no films"),
+                "remove film; the published schemes are kept as published",
+            ));
         }
         Ok(())
     }
@@ -227,7 +301,11 @@ impl Case {
     fn check_time(&self) -> Result<(), CaseError> {
         let time = &self.time;
         if time.steps.is_none() && time.end.is_none() && time.until.is_none() && time.stop.is_none() {
-            return Err(self.fault("time", "nothing ends the run", "add steps = 1000, end = 10.0, until = \"rest\" or stop.kinetic_energy = 0.01"));
+            return Err(self.fault(
+                "time",
+                "nothing ends the run",
+                "add steps = 1000, end = 10.0, until = \"rest\" or stop.kinetic_energy = 0.01",
+            ));
         }
         if time.steps == Some(0) {
             return Err(self.source.fault("time.steps", "found 0, expected a whole number > 0"));
@@ -235,14 +313,30 @@ impl Case {
         self.positive("time.end", time.end)?;
         self.positive("time.rest_speed", time.rest_speed)?;
         if let Some(stop) = &time.stop {
-            self.number("time.stop.kinetic_energy", stop.kinetic_energy, |v| v > 0.0 && v < 1.0, "a share of the peak, between 0 and 1")?;
+            self.number(
+                "time.stop.kinetic_energy",
+                stop.kinetic_energy,
+                |v| v > 0.0 && v < 1.0,
+                "a share of the peak, between 0 and 1",
+            )?;
         }
         if time.rest_speed.is_some() && time.until.is_none() {
-            return Err(self.fault("time.rest_speed", "`rest_speed` has no meaning without until = \"rest\"", "add until = \"rest\" or remove rest_speed"));
+            return Err(self.fault(
+                "time.rest_speed",
+                "`rest_speed` has no meaning without until = \"rest\"",
+                "add until = \"rest\" or remove rest_speed",
+            ));
         }
         if time.until.is_some() && self.scheme.name.verfahren().is_some() && time.rest_speed.is_none() {
-            let message = format!("{} never reaches speed 0, so until = \"rest\" would never end", self.scheme.name.as_str());
-            return Err(self.fault("time.until", message, "add rest_speed = 1e-12, or use the scheme balanced, which stops exactly"));
+            let message = format!(
+                "{} never reaches speed 0, so until = \"rest\" would never end",
+                self.scheme.name.as_str()
+            );
+            return Err(self.fault(
+                "time.until",
+                message,
+                "add rest_speed = 1e-12, or use the scheme balanced, which stops exactly",
+            ));
         }
         Ok(())
     }
@@ -259,7 +353,11 @@ impl Case {
         for (index, kind) in output.files.iter().flatten().enumerate() {
             let key = format!("output.files[{index}]");
             if kind.needs_terrain() && self.terrain.is_none() {
-                return Err(self.fault(&key, format!("`{}` needs [terrain]", kind.as_str()), "on a grid: netcdf, csv, vtk, figures, animation"));
+                return Err(self.fault(
+                    &key,
+                    format!("`{}` needs [terrain]", kind.as_str()),
+                    "on a grid: netcdf, csv, vtk, figures, animation",
+                ));
             }
         }
         Ok(())
@@ -268,7 +366,11 @@ impl Case {
     fn check_initial(&self) -> Result<(), CaseError> {
         let (Some(grid), Some(initial)) = (&self.grid, &self.initial) else { return Ok(()) };
         if initial.velocity_y.is_some() && grid.y.is_none() {
-            return Err(self.fault("initial.velocity_y", "the grid has no y", "remove velocity_y, or add grid.y"));
+            return Err(self.fault(
+                "initial.velocity_y",
+                "the grid has no y",
+                "remove velocity_y, or add grid.y",
+            ));
         }
         let all = [Some(&initial.thickness), initial.velocity_x.as_ref(), initial.velocity_y.as_ref()];
         for (name, quantity) in ["thickness", "velocity_x", "velocity_y"].into_iter().zip(all) {
@@ -299,12 +401,28 @@ impl Case {
     fn check_release(&self, key: &str, release: &Release) -> Result<(), CaseError> {
         let given = [release.polygons.is_some(), release.raster.is_some(), release.cap.is_some()];
         if given.iter().filter(|given| **given).count() != 1 {
-            return Err(self.fault(key, "a release has exactly one of polygons, raster, cap", "split it into several [[release]] tables, or remove what is too much"));
+            return Err(self.fault(
+                key,
+                "a release has exactly one of polygons, raster, cap",
+                "split it into several [[release]] tables, or remove what is too much",
+            ));
         }
         let thickness = format!("{key}.thickness");
         match (&release.thickness, release.polygons.is_some()) {
-            (None, true) => return Err(self.fault(&thickness, "the key `thickness` is missing", "add thickness = 1.0 (metres) or thickness = { attribute = \"thickness\" }")),
-            (Some(_), false) => return Err(self.fault(&thickness, "`thickness` belongs to polygons", "remove it: a raster or a cap has its own thickness")),
+            (None, true) => {
+                return Err(self.fault(
+                    &thickness,
+                    "the key `thickness` is missing",
+                    "add thickness = 1.0 (metres) or thickness = { attribute = \"thickness\" }",
+                ));
+            }
+            (Some(_), false) => {
+                return Err(self.fault(
+                    &thickness,
+                    "`thickness` belongs to polygons",
+                    "remove it: a raster or a cap has its own thickness",
+                ));
+            }
             (Some(Thickness::Constant(value)), true) => self.positive(&thickness, Some(*value))?,
             _ => {}
         }

@@ -24,7 +24,12 @@ where
 }
 
 /// Reads a number or a word by `read`, or a table as a `T` by `table`; `expected` names what is allowed.
-pub(super) fn plain_or_table<'de, D, T, V, F, G>(from: D, expected: &str, read: F, table: G) -> Result<V, D::Error>
+pub(super) fn plain_or_table<'de, D, T, V, F, G>(
+    from: D,
+    expected: &str,
+    read: F,
+    table: G,
+) -> Result<V, D::Error>
 where
     D: Deserializer<'de>,
     T: Deserialize<'de>,

@@ -31,7 +31,13 @@ struct Fault {
 
 impl CaseError {
     /// An error at a place of a text; `name` is the file's name, or the command-line argument the text came from.
-    pub(super) fn new(name: &str, text: &str, span: Option<Range<usize>>, key: &str, message: String) -> Self {
+    pub(super) fn new(
+        name: &str,
+        text: &str,
+        span: Option<Range<usize>>,
+        key: &str,
+        message: String,
+    ) -> Self {
         Self(Box::new(Fault {
             kind: CaseErrorKind::Invalid,
             name: name.to_owned(),
@@ -152,7 +158,10 @@ pub fn nearest<'a>(found: &str, known: impl IntoIterator<Item = &'a str>) -> Opt
         .map(|name| {
             let lower = name.to_lowercase();
             let begins = found.len() >= 3 && lower.starts_with(&found);
-            (if begins { 0.9 } else { 0.0f64 }.max(strsim::normalized_damerau_levenshtein(&found, &lower)), name)
+            (
+                if begins { 0.9 } else { 0.0f64 }.max(strsim::normalized_damerau_levenshtein(&found, &lower)),
+                name,
+            )
         })
         .filter(|(likeness, _)| *likeness >= 0.5)
         .max_by(|a, b| a.0.total_cmp(&b.0))

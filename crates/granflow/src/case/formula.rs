@@ -211,8 +211,15 @@ impl<'a> Reader<'a> {
         let exponent = self.signed()?;
         self.depth -= 1;
         // a small whole power is a product: exact where the product is, and the same on every machine
-        let apply: fn(f64, f64) -> f64 =
-            |a, b| if b == 2.0 { a * a } else if b.fract() == 0.0 && b.abs() < 1e9 { a.powi(b as i32) } else { a.powf(b) };
+        let apply: fn(f64, f64) -> f64 = |a, b| {
+            if b == 2.0 {
+                a * a
+            } else if b.fract() == 0.0 && b.abs() < 1e9 {
+                a.powi(b as i32)
+            } else {
+                a.powf(b)
+            }
+        };
         Ok(Node::Binary(apply, Box::new([base, exponent])))
     }
 
@@ -238,7 +245,9 @@ impl<'a> Reader<'a> {
             let sign = rest[length];
             let exponent_sign = matches!(sign, b'+' | b'-') && matches!(rest[length - 1], b'e' | b'E');
             let exponent = matches!(sign, b'e' | b'E')
-                && rest[length + 1..].first().is_some_and(|next| next.is_ascii_digit() || matches!(next, b'+' | b'-'));
+                && rest[length + 1..]
+                    .first()
+                    .is_some_and(|next| next.is_ascii_digit() || matches!(next, b'+' | b'-'));
             if !(sign.is_ascii_digit() || sign == b'.' || exponent || (length > 0 && exponent_sign)) {
                 break;
             }
@@ -306,8 +315,14 @@ impl<'a> Reader<'a> {
 
     fn unknown(&self, name: &str, at: usize) -> FormulaError {
         let functions = UNARY.iter().map(|(known, _)| *known).chain(BINARY.iter().map(|(known, _)| *known));
-        let known: Vec<&str> =
-            self.variables.iter().copied().chain(["pi", "e"]).chain(functions).chain(CHOICE.iter().copied()).collect();
+        let known: Vec<&str> = self
+            .variables
+            .iter()
+            .copied()
+            .chain(["pi", "e"])
+            .chain(functions)
+            .chain(CHOICE.iter().copied())
+            .collect();
         let near = super::fault::nearest(name, known.iter().copied())
             .map(|near| format!(" (did you mean `{near}`?)"))
             .unwrap_or_default();

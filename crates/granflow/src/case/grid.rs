@@ -166,7 +166,10 @@ impl<'de> Deserialize<'de> for SidePair {
                     found.push(side);
                 }
                 let count = found.len();
-                found.try_into().map(SidePair::Pair).map_err(|_| serde::de::Error::invalid_length(count, &self))
+                found
+                    .try_into()
+                    .map(SidePair::Pair)
+                    .map_err(|_| serde::de::Error::invalid_length(count, &self))
             }
         }
         from.deserialize_any(Words)

@@ -162,12 +162,17 @@ impl Quantity {
     /// What can be said about the numbers without evaluating anything.
     pub(super) fn verify(&self) -> Result<(), QuantityFault> {
         let positive = |key, value: f64| {
-            if value > 0.0 { Ok(()) } else { Err(QuantityFault::new(key, format!("found {value}, expected a number > 0"))) }
+            if value > 0.0 {
+                Ok(())
+            } else {
+                Err(QuantityFault::new(key, format!("found {value}, expected a number > 0")))
+            }
         };
         match self {
             Self::Shape(Shape::Steps(Steps { at, values })) => {
                 if values.len() != at.len() + 1 {
-                    let message = format!("{} values for {} jumps, expected {}", values.len(), at.len(), at.len() + 1);
+                    let message =
+                        format!("{} values for {} jumps, expected {}", values.len(), at.len(), at.len() + 1);
                     return Err(QuantityFault::new("steps.values", message));
                 }
                 match at.windows(2).find(|pair| pair[0] >= pair[1]) {
@@ -197,7 +202,9 @@ impl Quantity {
         };
         Ok(match self {
             Self::Constant(value) => vec![*value; nx * ny],
-            Self::Shape(Shape::Steps(Steps { at, values })) => fill(&|x, _| values[at.partition_point(|jump| *jump < x)]),
+            Self::Shape(Shape::Steps(Steps { at, values })) => {
+                fill(&|x, _| values[at.partition_point(|jump| *jump < x)])
+            }
             Self::Shape(Shape::Cap(Cap { height, centre, radius })) => {
                 fill(&|x, y| (height * (1.0 - (centre.distance(x, y) / radius).powi(2))).max(0.0))
             }

@@ -91,11 +91,19 @@ impl Chute {
                     return Err(fault("x", format!("{} point(s), a profile needs at least 2", x.len())));
                 }
                 if let Some(pair) = x.windows(2).find(|pair| pair[0] >= pair[1]) {
-                    return Err(fault("x", format!("{} comes after {}; the places must grow", pair[1], pair[0])));
+                    return Err(fault(
+                        "x",
+                        format!("{} comes after {}; the places must grow", pair[1], pair[0]),
+                    ));
                 }
                 Zeta::Points(x.iter().zip(angle).map(|(x, angle)| (*x, angle.radians())).collect())
             }
-            _ => return Err(fault("", "a profile is { x = [...], angle = [...] } or { formula = \"...\" }".to_owned())),
+            _ => {
+                return Err(fault(
+                    "",
+                    "a profile is { x = [...], angle = [...] } or { formula = \"...\" }".to_owned(),
+                ));
+            }
         };
         let kappa = profile.curvature.as_ref().map(|text| read("curvature", text)).transpose()?;
         Ok(Self { zeta, kappa })

@@ -70,8 +70,9 @@ impl Source {
         for piece in pieces {
             let table = shift_table(piece.parse()?.into_inner(), piece.start);
             lay_over(root.get_mut(), table, &piece.path).map_err(|message| {
-                CaseError::new(&piece.name, &piece.text, None, &piece.path.join("."), message)
-                    .help("a number in the path counts the entries of a list from 0, as in release.0.thickness=1.5")
+                CaseError::new(&piece.name, &piece.text, None, &piece.path.join("."), message).help(
+                    "a number in the path counts the entries of a list from 0, as in release.0.thickness=1.5",
+                )
             })?;
         }
         Ok(root)
@@ -110,7 +111,12 @@ impl Source {
     }
 
     /// An error at a part of the text that `key` holds, given as bytes of the string's content.
-    pub(super) fn fault_in(&self, key: &str, part: Option<Range<usize>>, message: impl Into<String>) -> CaseError {
+    pub(super) fn fault_in(
+        &self,
+        key: &str,
+        part: Option<Range<usize>>,
+        message: impl Into<String>,
+    ) -> CaseError {
         let mut outer = key;
         let place = loop {
             if let Some(place) = self.places.get(outer) {
@@ -217,7 +223,8 @@ fn friendly(message: &str) -> String {
 
 fn note_table(places: &mut BTreeMap<String, Place>, path: &str, table: &DeTable) {
     for (key, value) in table {
-        let name = if path.is_empty() { key.get_ref().to_string() } else { format!("{path}.{}", key.get_ref()) };
+        let name =
+            if path.is_empty() { key.get_ref().to_string() } else { format!("{path}.{}", key.get_ref()) };
         places.insert(name.clone(), Place { key: key.span(), value: value.span() });
         note_value(places, &name, value.get_ref());
     }
@@ -246,7 +253,9 @@ fn split(name: &str, argument: &str) -> Result<(Vec<String>, String), CaseError>
     let (key, value) = argument.split_once('=').ok_or_else(|| wrong("there is no `=`"))?;
     let (key, value) = (key.trim(), value.trim());
     let path: Vec<String> = key.split('.').map(|part| part.trim().to_owned()).collect();
-    let bare = |part: &String| !part.is_empty() && part.chars().all(|sign| sign.is_ascii_alphanumeric() || "_-".contains(sign));
+    let bare = |part: &String| {
+        !part.is_empty() && part.chars().all(|sign| sign.is_ascii_alphanumeric() || "_-".contains(sign))
+    };
     if !path.iter().all(bare) {
         return Err(wrong(&format!("`{key}` is not a key")));
     }
@@ -284,7 +293,12 @@ fn lay_over<'a>(document: &mut DeTable<'a>, over: DeTable<'a>, path: &[String]) 
     Ok(())
 }
 
-fn lay_over_list<'a>(list: &mut DeArray<'a>, over: DeTable<'a>, path: &[String], name: &str) -> Result<(), String> {
+fn lay_over_list<'a>(
+    list: &mut DeArray<'a>,
+    over: DeTable<'a>,
+    path: &[String],
+    name: &str,
+) -> Result<(), String> {
     let count = list.len();
     let item = path[0].parse().ok().and_then(|index: usize| list.get_mut(index));
     let Some(item) = item else {
