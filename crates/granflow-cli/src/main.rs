@@ -1,2 +1,150 @@
-//! x
-fn main() {}
+//! `granflow`: where a granular mass comes to rest.
+
+use std::path::PathBuf;
+use std::process::ExitCode;
+
+use clap::{Parser, Subcommand};
+use granflow::case::Case;
+
+mod check;
+mod demo;
+mod failure;
+mod interrupt;
+mod mountain;
+mod new;
+mod plot;
+mod progress;
+mod reproduce;
+mod run;
+mod schema;
+
+use failure::Failure;
+
+const EXAMPLES: &str = "\
+Examples:
+  granflow demo                          a mountain avalanche that comes to rest, no file needed
+  granflow new --list                    the kinds of cases to start from
+  granflow new silo                      writes silo.toml, commented
+  granflow check silo.toml               what would be computed, and how large it is
+  granflow run silo.toml                 writes silo/result.nc, silo/summary.json, silo/figures/
+  granflow run silo.toml --set scheme.name=balanced --set time.until=rest --out rest
+
+Exit status: 0 done; 2 bad usage or bad case; 3 the computation failed; 4 a file could not be read or written;
+130 interrupted.";
+
+/// Where a granular mass comes to rest: Savage-Hutter avalanches on grids and real terrain.
+#[derive(Debug, Parser)]
+#[command(name = "granflow", version, after_help = EXAMPLES, arg_required_else_help = true)]
+struct Arguments {
+    #[command(subcommand)]
+    command: Command,
+}
+
+#[derive(Debug, Subcommand)]
+enum Command {
+    /// Computes a case and writes its results
+    #[command(
+        after_help = "Ctrl-C ends at the next step with everything valid and a checkpoint; a second one ends at once."
+    )]
+    Run {
+        /// The case file
+        #[arg(value_name = "CASE.toml")]
+        case: PathBuf,
+        /// Where the results go (default: the case's name)
+        #[arg(long, value_name = "DIR")]
+        out: Option<PathBuf>,
+        /// Changes a key of the case; may be repeated
+        #[arg(long, value_name = "key.path=value")]
+        set: Vec<String>,
+        /// Number of threads (default: all cores)
+        #[arg(long, value_name = "N")]
+        threads: Option<std::num::NonZeroUsize>,
+        /// Goes on from the checkpoint of an interrupted run
+        #[arg(long)]
+        resume: bool,
+        /// No progress
+        #[arg(long, short)]
+        quiet: bool,
+    },
+    /// Reads a case and says what would be computed; computes nothing
+    Check {
+        /// The case file
+        #[arg(value_name = "CASE.toml")]
+        case: PathBuf,
+        /// Changes a key of the case; may be repeated
+        #[arg(long, value_name = "key.path=value")]
+        set: Vec<String>,
+    },
+    /// Writes a commented case to start from
+    New {
+        /// The kind of case; see --list
+        kind: Option<String>,
+        /// The file to write (default: KIND.toml); an existing one is never overwritten
+        file: Option<PathBuf>,
+        /// Lists the kinds
+        #[arg(long)]
+        list: bool,
+    },
+    /// Computes the tables and figures of the papers, ours beside theirs
+    Reproduce {
+        /// The paper (default: all)
+        paper: Option<String>,
+        /// Where the results go
+        #[arg(long, value_name = "DIR", default_value = "reproduce")]
+        out: PathBuf,
+    },
+    /// Draws the figures of finished runs again
+    Plot {
+        /// Results of finished runs
+        #[arg(required = true, value_name = "RESULT.nc")]
+        results: Vec<PathBuf>,
+        /// Where the figures go (default: figures/ beside each result)
+        #[arg(long, value_name = "DIR")]
+        out: Option<PathBuf>,
+    },
+    /// Prints the JSON Schema of the case file
+    Schema,
+    /// Computes a built-in mountain avalanche to its rest; needs no file
+    Demo {
+        /// Where the results go
+        #[arg(long, value_name = "DIR", default_value = "demo")]
+        out: PathBuf,
+    },
+}
+
+fn main() -> ExitCode {
+    // a closed pipe or a refused hook is no reason to fail: the default report is readable too
+    let _ = miette::set_hook(Box::new(|_| {
+        Box::new(miette::MietteHandlerOpts::new().wrap_lines(false).break_words(false).build())
+    }));
+    match act(Arguments::parse().command) {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(failure) => failure.report(),
+    }
+}
+
+fn act(command: Command) -> Result<(), Failure> {
+    match command {
+        Command::Run { case, out, set, threads, resume, quiet } => {
+            let case = read(&case, &set)?;
+            run::run(&case, &run::RunOptions { out, threads, resume, quiet })
+        }
+        Command::Check { case, set } => check::check(&read(&case, &set)?),
+        Command::New { list: true, .. } => new::list(),
+        Command::New { kind: None, .. } => {
+            Err(Failure::usage("which kind of case?", "granflow new --list shows the kinds"))
+        }
+        Command::New { kind: Some(kind), file, .. } => new::new(&kind, file),
+        Command::Reproduce { paper, out } => reproduce::reproduce(paper.as_deref(), &out),
+        Command::Plot { results, out } => plot::plot(&results, out.as_deref()),
+        Command::Schema => schema::schema(),
+        Command::Demo { out } => demo::demo(&out),
+    }
+}
+
+/// Reads a case with its overrides and checks it.
+fn read(path: &std::path::Path, overrides: &[String]) -> Result<Case, Failure> {
+    let case = Case::load_with(path, overrides)?;
+    case.check()?;
+    Ok(case)
+}

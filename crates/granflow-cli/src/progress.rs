@@ -1,0 +1,136 @@
+//! Progress on standard error: a bar on a terminal, plain lines every few seconds elsewhere.
+
+use std::io::{self, IsTerminal, Write};
+use std::time::{Duration, Instant};
+
+use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
+
+/// Between two plain lines.
+const PLAIN: Duration = Duration::from_secs(5);
+/// Between two looks at the clock that redraw the bar.
+const BAR: Duration = Duration::from_millis(100);
+/// Parts of the bar.
+const PARTS: u64 = 1000;
+
+/// Where a run is.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Status {
+    /// Simulated time.
+    pub time: f64,
+    /// Simulated time at which the run ends at the latest, if it is known.
+    pub end: Option<f64>,
+    /// Steps done.
+    pub step: u64,
+    /// Cells that hold more than a film.
+    pub wet_cells: usize,
+    /// Largest speed of a cell.
+    pub max_speed: f64,
+}
+
+impl Status {
+    /// The share of the run that is done, if its end is known.
+    fn share(&self) -> Option<f64> {
+        let end = self.end.filter(|end| *end > 0.0)?;
+        Some((self.time / end).clamp(0.0, 1.0))
+    }
+
+    /// One line of words and numbers; `elapsed` is the wall time since `begin`, the share at the start.
+    fn line(&self, begin: f64, elapsed: Duration) -> String {
+        let Self { time, end, step, wet_cells, max_speed } = self;
+        let end = end.map(|end| format!(" of {end:.4}")).unwrap_or_default();
+        let left = self
+            .left(begin, elapsed)
+            .map(|left| format!(", at most {} left", words(left)))
+            .unwrap_or_default();
+        format!("time {time:.4}{end}, step {step}, {wet_cells} wet cells, speed {max_speed:.3e}{left}")
+    }
+
+    /// Wall time left if the rest goes as fast as what was done.
+    fn left(&self, begin: f64, elapsed: Duration) -> Option<Duration> {
+        let done = self.share()? - begin;
+        let left = elapsed.as_secs_f64() * (1.0 - begin - done) / done;
+        Duration::try_from_secs_f64(left).ok()
+    }
+}
+
+/// A wall time in words.
+fn words(time: Duration) -> String {
+    let seconds = time.as_secs();
+    match seconds {
+        0..60 => format!("{seconds} s"),
+        60..3600 => format!("{} min {:02} s", seconds / 60, seconds % 60),
+        _ => format!("{} h {:02} min", seconds / 3600, seconds / 60 % 60),
+    }
+}
+
+/// Shows a run's status while it works.
+#[derive(Debug)]
+pub struct Progress {
+    bar: Option<ProgressBar>,
+    plain: bool,
+    start: Instant,
+    begin: Option<f64>,
+    shown: Option<Instant>,
+}
+
+impl Progress {
+    /// A bar if standard error is a terminal, plain lines if not, nothing if `quiet`.
+    pub fn new(quiet: bool) -> Self {
+        let terminal = io::stderr().is_terminal();
+        let bar = (terminal && !quiet).then(|| {
+            let bar = ProgressBar::with_draw_target(Some(PARTS), ProgressDrawTarget::stderr());
+            let style = ProgressStyle::with_template("{bar:24} {percent:>3} % {msg}");
+            style.into_iter().for_each(|style| bar.set_style(style));
+            bar
+        });
+        Self { bar, plain: !terminal && !quiet, start: Instant::now(), begin: None, shown: None }
+    }
+
+    /// Shows the status, if it is time to.
+    pub fn show(&mut self, status: &Status) {
+        let pause = if self.bar.is_some() { BAR } else { PLAIN };
+        let begin = *self.begin.get_or_insert(status.share().unwrap_or(0.0));
+        if self.shown.is_some_and(|shown| shown.elapsed() < pause) {
+            return;
+        }
+        self.shown = Some(Instant::now());
+        let line = status.line(begin, self.start.elapsed());
+        if let Some(bar) = &self.bar {
+            bar.set_position((status.share().unwrap_or(0.0) * PARTS as f64) as u64);
+            bar.set_message(line);
+        } else if self.plain {
+            // nobody is left to be told if standard error is closed
+            let _ = writeln!(io::stderr(), "{line}");
+        }
+    }
+
+    /// Takes the bar away; the lines that follow stand alone.
+    pub fn finish(&self) {
+        self.bar.iter().for_each(ProgressBar::finish_and_clear);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_line_says_where_the_run_is() {
+        let status = Status { time: 2.5, end: Some(10.0), step: 250, wet_cells: 40, max_speed: 1.25 };
+        let line = status.line(0.0, Duration::from_secs(30));
+        assert_eq!(
+            line,
+            "time 2.5000 of 10.0000, step 250, 40 wet cells, speed 1.250e0, at most 1 min 30 s left"
+        );
+        let open = Status { end: None, ..status };
+        assert_eq!(
+            open.line(0.0, Duration::from_secs(30)),
+            "time 2.5000, step 250, 40 wet cells, speed 1.250e0"
+        );
+        let resumed = status.left(0.2, Duration::from_secs(10));
+        assert_eq!(resumed.map(|left| left.as_secs()), Some(150), "only the part of this session counts");
+        let first = Status { time: 0.0, ..status };
+        assert_eq!(first.left(0.0, Duration::from_secs(1)), None);
+        assert_eq!(words(Duration::from_secs(7265)), "2 h 01 min");
+    }
+}

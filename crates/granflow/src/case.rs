@@ -1,0 +1,318 @@
+//! The case file: what is simulated, in one TOML document.
+//!
+//! [`Case::load`] reads a file, [`Case::parse`] a text; both know the place of every key, so that each error names
+//! file, line and key, what was found and what is allowed. [`Case::check`] then says everything that can be said
+//! before work starts, and the evaluators ([`Case::chute`], [`Case::initial_state`], [`Case::frames`]) turn the words
+//! into plain numbers.
+//!
+//! ```
+//! use granflow::case::Case;
+//! let case = Case::parse(
+//!     r#"
+//!     title = "A silo breaks"
+//!     model = "savage_hutter"
+//!     grid.x = { from = -6.0, to = 6.0, cells = 240 }
+//!     material.friction.coulomb = { angle = "18 deg" }
+//!     initial.thickness.steps = { at = [-1.0, 1.0], values = [0.3, 2.3, 0.3] }
+//!     time.until = "rest"
+//!     "#,
+//!     "silo.toml",
+//! )?;
+//! case.check()?;
+//! assert_eq!(case.initial_state()?.thickness[120], 2.3);
+//! # Ok::<(), granflow::case::CaseError>(())
+//! ```
+
+use std::path::{Path, PathBuf};
+
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+mod array;
+mod check;
+mod choice;
+mod fault;
+mod formula;
+mod grid;
+mod initial;
+mod material;
+mod output;
+mod scheme;
+mod slope;
+mod source;
+mod terrain;
+mod time;
+mod units;
+
+pub use fault::{CaseError, CaseErrorKind, nearest};
+pub use formula::{Formula, FormulaError};
+pub use grid::{Axis, AxisSides, Boundary, Grid, Side, SidePair};
+pub use initial::{Cap, Centre, Cone, Initial, Parabola, Quantity, Shape, Steps};
+pub use material::{Cohesion, Coulomb, EarthPressure, Friction, Material, Samosat, Voellmy};
+pub use output::{FileKind, Frames, Output, Precision};
+pub use scheme::{Scheme, SchemeName, Stepping};
+pub use slope::{Chute, Profile, Slope};
+pub use source::Source;
+pub use terrain::{Attribute, Curvature, Measured, Off, Release, ReleaseCap, Terrain, Thickness, Window};
+pub use time::{Stop, Time, Until};
+pub use units::{Angle, Length};
+
+/// A case: a model on a grid or on terrain, from its start to its end.
+#[derive(Debug, Clone, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+#[schemars(title = "granflow case")]
+pub struct Case {
+    /// What the figures and the report are headed with.
+    #[serde(default)]
+    pub title: String,
+    /// The model.
+    #[serde(default)]
+    pub model: Model,
+    /// The grid of a scaled case; a case has [grid] or [terrain].
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub grid: Option<Grid>,
+    /// The mountain; a case has [grid] or [terrain].
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub terrain: Option<Terrain>,
+    /// The material.
+    pub material: Material,
+    /// The state at the start, on a grid.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub initial: Option<Initial>,
+    /// What is released at the start, on terrain.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub release: Vec<Release>,
+    /// The method.
+    #[serde(default)]
+    pub scheme: Scheme,
+    /// The end of the run.
+    pub time: Time,
+    /// The files.
+    #[serde(default)]
+    pub output: Output,
+    /// The text the case was read from.
+    #[serde(skip)]
+    source: Source,
+}
+
+/// The models.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum Model {
+    /// A granular avalanche, depth-averaged (Savage & Hutter 1989).
+    #[default]
+    SavageHutter,
+}
+
+impl Model {
+    /// The name a case file writes.
+    #[must_use]
+    pub fn as_str(self) -> &'static str {
+        match self {
+            Self::SavageHutter => "savage_hutter",
+        }
+    }
+}
+
+/// The state at time 0 at the centres of the cells, x fastest.
+#[derive(Debug, Clone, PartialEq)]
+pub struct InitialState {
+    /// Thickness h, not negative.
+    pub thickness: Vec<f64>,
+    /// Velocity along x.
+    pub velocity_x: Vec<f64>,
+    /// Velocity along y, 0 in one dimension.
+    pub velocity_y: Vec<f64>,
+}
+
+impl Case {
+    /// Reads a case from a text; `source_name` is what errors call it, and files are looked for beside it.
+    ///
+    /// # Errors
+    /// [`CaseError`] at the first place that is not TOML, an unknown key, a wrong type or a missing key.
+    pub fn parse(text: &str, source_name: &str) -> Result<Self, CaseError> {
+        Self::parse_with(text, source_name, &[])
+    }
+
+    /// Reads a case from a text with overrides `key.path=value` laid over it.
+    ///
+    /// # Errors
+    /// As [`Case::parse`]; an error in an override names it.
+    pub fn parse_with(text: &str, source_name: &str, overrides: &[String]) -> Result<Self, CaseError> {
+        let source = Source::read(source_name, text, overrides)?;
+        let document = source.document()?;
+        if let Some(toml::de::DeValue::String(name)) =
+            document.get_ref().get("model").map(toml::Spanned::get_ref)
+            && name == "hadeler_kuttler"
+        {
+            return Err(source
+                .fault("model", "the model hadeler_kuttler is not in this version")
+                .help("allowed: savage_hutter"));
+        }
+        let parsed = Self::deserialize(toml::de::Deserializer::from(document));
+        let mut case = parsed.map_err(|error| source.explain(&error))?;
+        case.source = source;
+        Ok(case)
+    }
+
+    /// Reads a case file.
+    ///
+    /// # Errors
+    /// As [`Case::parse`]; a file that cannot be read is answered with the nearest name that exists.
+    pub fn load(path: &Path) -> Result<Self, CaseError> {
+        Self::load_with(path, &[])
+    }
+
+    /// Reads a case file with overrides `key.path=value` laid over it.
+    ///
+    /// # Errors
+    /// As [`Case::load`]; an error in an override names it.
+    pub fn load_with(path: &Path, overrides: &[String]) -> Result<Self, CaseError> {
+        let name = path.display().to_string();
+        let bytes = std::fs::read(path).map_err(|error| check::missing(path, &error, &name))?;
+        let text = String::from_utf8(bytes).map_err(|_| {
+            CaseError::unreadable(&name, "this is not UTF-8 text, so it is no case file".to_owned())
+        })?;
+        Self::parse_with(&text, &name, overrides)
+    }
+
+    /// The text the case was read from, with its overrides as comment lines at the end.
+    #[must_use]
+    pub fn text(&self) -> String {
+        self.source.text()
+    }
+
+    /// The name of the file the case was read from.
+    #[must_use]
+    pub fn source_name(&self) -> &str {
+        self.source.name()
+    }
+
+    /// A path of the case, seen from the folder of the case file.
+    #[must_use]
+    pub fn resolve(&self, path: &Path) -> PathBuf {
+        self.folder().join(path)
+    }
+
+    fn folder(&self) -> PathBuf {
+        Path::new(self.source.name()).parent().map(Path::to_path_buf).unwrap_or_default()
+    }
+
+    /// An error at a key of this case, for what only shows later (a raster without a CRS, a missing attribute).
+    #[must_use]
+    pub fn fault(&self, key: &str, message: impl Into<String>, cure: &str) -> CaseError {
+        self.source.fault(key, message).help(cure)
+    }
+
+    /// The case written as TOML, with angles in radians.
+    #[must_use]
+    pub fn to_toml(&self) -> String {
+        toml::to_string(self).unwrap_or_default()
+    }
+
+    /// Gravity: what the case says, else 9.81 m/s^2 on terrain and 1 on a grid.
+    #[must_use]
+    pub fn gravity(&self) -> f64 {
+        self.material.gravity.unwrap_or(if self.terrain.is_some() { 9.81 } else { 1.0 })
+    }
+
+    /// The inclination of the chute along x; flat if the case does not say.
+    ///
+    /// # Errors
+    /// [`CaseError`] for a profile that cannot be evaluated.
+    pub fn chute(&self) -> Result<Chute, CaseError> {
+        let slope = self.material.slope.clone().unwrap_or_default();
+        Chute::new(&slope).map_err(|fault| {
+            let dot = if fault.key.is_empty() { "" } else { "." };
+            self.source.fault_in(&format!("material.slope{dot}{}", fault.key), fault.part, fault.message)
+        })
+    }
+
+    /// Thickness and velocity at the centres of the cells of a case with a grid.
+    ///
+    /// # Errors
+    /// [`CaseError`] for a quantity that cannot be evaluated, a negative thickness or a number that is not finite.
+    pub fn initial_state(&self) -> Result<InitialState, CaseError> {
+        let (Some(grid), Some(initial)) = (&self.grid, &self.initial) else {
+            return Err(self.source.fault("initial", "the case has no [grid] with an [initial] state"));
+        };
+        let thickness = self.evaluate(grid, "thickness", Some(&initial.thickness))?;
+        if let Some(cell) = thickness.iter().position(|h| *h < 0.0) {
+            let message = format!("the thickness is {} at {}", thickness[cell], place(grid, cell));
+            return Err(self
+                .source
+                .fault("initial.thickness", message)
+                .help("a thickness is never negative; max(..., 0) cuts a formula off"));
+        }
+        Ok(InitialState {
+            thickness,
+            velocity_x: self.evaluate(grid, "velocity_x", initial.velocity_x.as_ref())?,
+            velocity_y: self.evaluate(grid, "velocity_y", initial.velocity_y.as_ref())?,
+        })
+    }
+
+    fn evaluate(&self, grid: &Grid, name: &str, quantity: Option<&Quantity>) -> Result<Vec<f64>, CaseError> {
+        let key = format!("initial.{name}");
+        let values =
+            quantity.unwrap_or(&Quantity::Constant(0.0)).on(grid, &self.folder()).map_err(|fault| {
+                let error = self.source.fault_in(&format!("{key}.{}", fault.key), fault.part, fault.message);
+                if fault.file { error.file() } else { error }
+            })?;
+        match values.iter().position(|value| !value.is_finite()) {
+            None => Ok(values),
+            Some(cell) => Err(self
+                .source
+                .fault(&key, format!("the value is {} at {}", values[cell], place(grid, cell)))
+                .help("every cell needs a finite number")),
+        }
+    }
+
+    /// When the state is written.
+    #[must_use]
+    pub fn frames(&self) -> Frames {
+        const DEFAULT: u32 = 20;
+        match (self.output.every, self.output.steps, self.time.end, self.time.steps) {
+            (Some(every), ..) => Frames::Every(every),
+            (None, Some(steps), ..) => Frames::Steps(steps),
+            (None, None, Some(end), _) => Frames::Every(end / f64::from(DEFAULT)),
+            (None, None, None, Some(steps)) => Frames::Steps(steps.div_ceil(u64::from(DEFAULT)).max(1)),
+            (None, None, None, None) => Frames::Ends,
+        }
+    }
+
+    /// The kinds of files to write.
+    #[must_use]
+    pub fn files(&self) -> Vec<FileKind> {
+        let grid = [FileKind::Netcdf, FileKind::Figures];
+        let more = [FileKind::Geotiff, FileKind::Vector, FileKind::Report];
+        match &self.output.files {
+            Some(files) => files.clone(),
+            None if self.terrain.is_some() => grid.into_iter().chain(more).collect(),
+            None => grid.to_vec(),
+        }
+    }
+
+    /// Precision of the numbers in the files.
+    #[must_use]
+    pub fn precision(&self) -> Precision {
+        self.output.precision.unwrap_or(if self.terrain.is_some() { Precision::F32 } else { Precision::F64 })
+    }
+}
+
+/// The JSON Schema of the case file.
+#[must_use]
+pub fn json_schema() -> serde_json::Value {
+    schemars::schema_for!(Case).to_value()
+}
+
+/// Where a cell lies, in words.
+fn place(grid: &Grid, cell: usize) -> String {
+    let x = grid.x.centre(cell % grid.x.cells);
+    match &grid.y {
+        None => format!("x = {x}"),
+        Some(y) => format!("x = {x}, y = {}", y.centre(cell / grid.x.cells)),
+    }
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,242 @@
+//! `[initial]`: thickness and velocity at the start, on a grid.
+
+use std::path::{Path, PathBuf};
+
+use schemars::JsonSchema;
+use serde::{Deserialize, Deserializer, Serialize};
+
+use super::array::read_array;
+use super::choice::{Plain, plain_or_table};
+use super::formula::{Formula, FormulaError};
+use super::grid::Grid;
+
+/// The state at time 0, given at the centres of the cells.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Initial {
+    /// Thickness h, not negative.
+    pub thickness: Quantity,
+    /// Velocity along x (default 0).
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub velocity_x: Option<Quantity>,
+    /// Velocity along y (default 0).
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub velocity_y: Option<Quantity>,
+}
+
+/// A quantity over the grid: a number, or one of the shapes.
+#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
+#[serde(untagged)]
+pub enum Quantity {
+    /// The same everywhere.
+    Constant(f64),
+    /// A shape.
+    Shape(Shape),
+}
+
+/// The shapes a quantity may have.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum Shape {
+    /// Constant between places along x.
+    Steps(Steps),
+    /// A parabolic cap, height (1 - r^2/radius^2) within its radius and 0 beyond.
+    Cap(Cap),
+    /// A parabola, max(floor, height - curvature r^2).
+    Parabola(Parabola),
+    /// A cone (a roof in one dimension), max(0, height - slope r).
+    Cone(Cone),
+    /// A formula in x and y, for instance "max(1 - x^2, 0)".
+    Formula(String),
+    /// A file with one number a cell: .npy with shape (cells) or (cells of y, cells of x), or .csv with one row for each y.
+    File(PathBuf),
+}
+
+/// Constant pieces along x: `values[k]` where `at[k-1]` < x <= `at[k]`.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Steps {
+    /// Places of the jumps, growing.
+    pub at: Vec<f64>,
+    /// Values between the jumps, one more than there are jumps.
+    pub values: Vec<f64>,
+}
+
+/// A parabolic cap, h = height (1 - r^2/radius^2).
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Cap {
+    /// Thickness at the centre.
+    pub height: f64,
+    /// Centre: x, or [x, y].
+    #[serde(default)]
+    pub centre: Centre,
+    /// Distance from the centre at which the cap ends.
+    pub radius: f64,
+}
+
+/// A parabola on a floor, h = max(floor, height - curvature r^2).
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Parabola {
+    /// Thickness at the centre.
+    pub height: f64,
+    /// Factor of r^2.
+    pub curvature: f64,
+    /// Centre: x, or [x, y].
+    #[serde(default)]
+    pub centre: Centre,
+    /// Least thickness (default 0).
+    #[serde(default)]
+    pub floor: f64,
+}
+
+/// A cone, h = max(0, height - slope r).
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Cone {
+    /// Thickness at the tip.
+    pub height: f64,
+    /// Centre: x, or [x, y].
+    #[serde(default)]
+    pub centre: Centre,
+    /// Loss of thickness per length, the gradient dh/dr in the case's units (a number, not an angle).
+    pub slope: f64,
+}
+
+/// A place on the grid: x, or [x, y] in two dimensions.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(untagged, expecting = "expected a centre: x, or [x, y]")]
+pub enum Centre {
+    /// On the x axis, y = 0.
+    X(f64),
+    /// In the plane.
+    Xy([f64; 2]),
+}
+
+impl Default for Centre {
+    fn default() -> Self {
+        Self::X(0.0)
+    }
+}
+
+impl Centre {
+    /// Distance of (x, y) from the centre.
+    fn distance(self, x: f64, y: f64) -> f64 {
+        match self {
+            // in one dimension y is 0 and the root of a square is exact
+            Self::X(cx) => (x - cx).hypot(y),
+            Self::Xy([cx, cy]) => (x - cx).hypot(y - cy),
+        }
+    }
+}
+
+impl<'de> Deserialize<'de> for Quantity {
+    fn deserialize<D: Deserializer<'de>>(from: D) -> Result<Self, D::Error> {
+        let expected = "a number or one of steps, cap, parabola, cone, formula, file";
+        let read = |value: Plain| match value {
+            Plain::Number(number) => Ok(Self::Constant(number)),
+            Plain::Text(text) => Err(format!(
+                "found the text \"{text}\", expected {expected}; a formula is written .formula = \"{text}\", a file .file = \"...\""
+            )),
+        };
+        plain_or_table(from, expected, read, Self::Shape)
+    }
+}
+
+/// What is wrong with a quantity: the key below it (with the bytes of a formula), the message, and whether a file is to blame.
+pub(super) struct QuantityFault {
+    pub key: &'static str,
+    pub part: Option<std::ops::Range<usize>>,
+    pub message: String,
+    pub file: bool,
+}
+
+impl QuantityFault {
+    fn new(key: &'static str, message: String) -> Self {
+        Self { key, part: None, message, file: false }
+    }
+}
+
+impl Quantity {
+    /// What can be said about the numbers without evaluating anything.
+    pub(super) fn verify(&self) -> Result<(), QuantityFault> {
+        let positive = |key, value: f64| {
+            if value > 0.0 {
+                Ok(())
+            } else {
+                Err(QuantityFault::new(key, format!("found {value}, expected a number > 0")))
+            }
+        };
+        match self {
+            Self::Shape(Shape::Steps(Steps { at, values })) => {
+                if values.len() != at.len() + 1 {
+                    let message =
+                        format!("{} values for {} jumps, expected {}", values.len(), at.len(), at.len() + 1);
+                    return Err(QuantityFault::new("steps.values", message));
+                }
+                match at.windows(2).find(|pair| pair[0] >= pair[1]) {
+                    Some(pair) => {
+                        let message = format!("{} comes after {}; the jumps must grow", pair[1], pair[0]);
+                        Err(QuantityFault::new("steps.at", message))
+                    }
+                    None => Ok(()),
+                }
+            }
+            Self::Shape(Shape::Cap(cap)) => positive("cap.radius", cap.radius),
+            Self::Shape(Shape::Cone(cone)) => positive("cone.slope", cone.slope),
+            Self::Shape(Shape::Parabola(parabola)) => positive("parabola.curvature", parabola.curvature),
+            Self::Shape(Shape::Formula(text)) => compile(text).map(|_| ()),
+            Self::Constant(_) | Self::Shape(Shape::File(_)) => Ok(()),
+        }
+    }
+
+    /// The values at the centres of all cells, x fastest; a file is looked for in `folder`.
+    pub(super) fn on(&self, grid: &Grid, folder: &Path) -> Result<Vec<f64>, QuantityFault> {
+        self.verify()?;
+        let [nx, ny] = grid.cells();
+        let xs = grid.x.centres();
+        let ys = grid.y.as_ref().map_or_else(|| vec![0.0], super::grid::Axis::centres);
+        let fill = |value: &dyn Fn(f64, f64) -> f64| {
+            ys.iter().flat_map(|y| xs.iter().map(move |x| value(*x, *y))).collect::<Vec<f64>>()
+        };
+        Ok(match self {
+            Self::Constant(value) => vec![*value; nx * ny],
+            Self::Shape(Shape::Steps(Steps { at, values })) => {
+                fill(&|x, _| values[at.partition_point(|jump| *jump < x)])
+            }
+            Self::Shape(Shape::Cap(Cap { height, centre, radius })) => {
+                fill(&|x, y| (height * (1.0 - (centre.distance(x, y) / radius).powi(2))).max(0.0))
+            }
+            Self::Shape(Shape::Parabola(Parabola { height, curvature, centre, floor })) => {
+                fill(&|x, y| (height - curvature * centre.distance(x, y).powi(2)).max(*floor))
+            }
+            Self::Shape(Shape::Cone(Cone { height, centre, slope })) => {
+                fill(&|x, y| (height - slope * centre.distance(x, y)).max(0.0))
+            }
+            Self::Shape(Shape::Formula(text)) => {
+                let formula = compile(text)?;
+                fill(&|x, y| formula.at(&[x, y]))
+            }
+            Self::Shape(Shape::File(path)) => read_array(&folder.join(path), [nx, ny])
+                .map_err(|message| QuantityFault { key: "file", part: None, message, file: true })?,
+        })
+    }
+
+    /// Whether evaluating needs a file.
+    pub(super) fn needs_file(&self) -> Option<&Path> {
+        match self {
+            Self::Shape(Shape::File(path)) => Some(path),
+            _ => None,
+        }
+    }
+}
+
+fn compile(text: &str) -> Result<Formula, QuantityFault> {
+    Formula::parse(text, &["x", "y"]).map_err(|FormulaError { message, at, length }| QuantityFault {
+        key: "formula",
+        part: Some(at..at + length),
+        message,
+        file: false,
+    })
+}

@@ -1,0 +1,111 @@
+//! `[scheme]`: which method, which time step, which films.
+
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+/// The numerical method.
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Scheme {
+    /// Name of the method.
+    #[serde(default)]
+    pub name: SchemeName,
+    /// A fixed time step; instead of `courant`.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub step: Option<f64>,
+    /// Courant number of the adaptive step: at most 1 (default 0.9) at first order, 0.5 (default 0.45) at second.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub courant: Option<f64>,
+    /// Thickness below which a cell is a film and is held (default 1e-6; 0 is allowed; not for verfahren_1..5).
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub film: Option<f64>,
+}
+
+/// The methods: the five published ones (Kaland 2007) and the conservative ones.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum SchemeName {
+    /// Conservative, positive, exactly resting, first order: the default.
+    #[default]
+    Balanced,
+    /// The same at second order in space and time.
+    #[serde(rename = "balanced_2")]
+    Balanced2,
+    /// Kaland's Verfahren 1, Scheme 1 of Kaland & Struckmeier (2007); alias scheme_1.
+    #[serde(rename = "verfahren_1", alias = "scheme_1")]
+    Verfahren1,
+    /// Kaland's Verfahren 2.
+    #[serde(rename = "verfahren_2")]
+    Verfahren2,
+    /// Kaland's Verfahren 3.
+    #[serde(rename = "verfahren_3")]
+    Verfahren3,
+    /// Kaland's Verfahren 4, Scheme 2 of Kaland & Struckmeier (2007); alias scheme_2.
+    #[serde(rename = "verfahren_4", alias = "scheme_2")]
+    Verfahren4,
+    /// Kaland's Verfahren 5, Scheme 3 of Kaland & Struckmeier (2007); alias scheme_3.
+    #[serde(rename = "verfahren_5", alias = "scheme_3")]
+    Verfahren5,
+}
+
+impl SchemeName {
+    /// The name a case file writes and the summary repeats.
+    #[must_use]
+    pub fn as_str(self) -> &'static str {
+        match self {
+            Self::Balanced => "balanced",
+            Self::Balanced2 => "balanced_2",
+            Self::Verfahren1 => "verfahren_1",
+            Self::Verfahren2 => "verfahren_2",
+            Self::Verfahren3 => "verfahren_3",
+            Self::Verfahren4 => "verfahren_4",
+            Self::Verfahren5 => "verfahren_5",
+        }
+    }
+
+    /// Number 1 to 5 of a published method.
+    #[must_use]
+    pub fn verfahren(self) -> Option<u8> {
+        match self {
+            Self::Balanced | Self::Balanced2 => None,
+            Self::Verfahren1 => Some(1),
+            Self::Verfahren2 => Some(2),
+            Self::Verfahren3 => Some(3),
+            Self::Verfahren4 => Some(4),
+            Self::Verfahren5 => Some(5),
+        }
+    }
+
+    /// The largest Courant number the method allows: 1 at first order, 0.5 at second.
+    #[must_use]
+    pub fn courant_limit(self) -> f64 {
+        if self == Self::Balanced2 { 0.5 } else { 1.0 }
+    }
+}
+
+/// How the time step is chosen.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Stepping {
+    /// Always this step.
+    Fixed(f64),
+    /// The step that this Courant number allows.
+    Courant(f64),
+}
+
+impl Scheme {
+    /// How the time step is chosen; without a word of the case, the Courant number is 0.9 of its limit.
+    #[must_use]
+    pub fn stepping(&self) -> Stepping {
+        match (self.step, self.courant) {
+            (Some(step), _) => Stepping::Fixed(step),
+            (None, Some(courant)) => Stepping::Courant(courant),
+            (None, None) => Stepping::Courant(0.9 * self.name.courant_limit()),
+        }
+    }
+
+    /// Thickness below which a cell is a film; the published methods know none.
+    #[must_use]
+    pub fn film(&self) -> f64 {
+        self.film.unwrap_or(if self.name.verfahren().is_some() { 0.0 } else { 1e-6 })
+    }
+}
