@@ -63,7 +63,7 @@ fn main() {
         if std::env::var("DUMP").is_ok_and(|d| sim.time() > d.parse().unwrap()) { 
         for k in 0..nx*ny { let i = grid.index(k); let s = sim.state(i); if s.q != [0.0;2] || (std::env::var("HELDALL").is_ok() && false) { let g0=grounds[k]; let e=|d:usize|{ (grounds[d].level+grounds[d].fall*grounds[d].cos*sim.state(grid.index(d)).h)/9.81 }; let e0=e(k);
           println!("({},{}) h {:.2e} u {:.3} {:.3} slope {:.2} {:.2} | de xl {:.3} xh {:.3} yl {:.3} yh {:.3} | h {:.1e} {:.1e} {:.1e} {:.1e}", i[0],i[1], s.h, s.q[0]/s.h, s.q[1]/s.h, g0.slope[0],g0.slope[1], e(k-1)-e0,e(k+1)-e0,e(k-nx)-e0,e(k+nx)-e0, sim.state(grid.index(k-1)).h, sim.state(grid.index(k+1)).h, sim.state(grid.index(k-nx)).h, sim.state(grid.index(k+nx)).h); } }
-        break; }
+        if std::env::var("DUMP").is_ok() { break; } }
     if let Err(e) = sim.advance(end) { println!("{e}"); break; }
         if sim.time() >= report || sim.at_rest() { let t = sim.totals(); println!("t {:.2} step {} speed {:.3} moving {} wet {} energy {:.3e} wall {:?}", sim.time(), sim.step(), t.speed, t.moving, t.wet, t.energy, t1.elapsed()); report += 10.0; }
         if sim.at_rest() { println!("AT REST"); break; }
