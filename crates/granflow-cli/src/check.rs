@@ -39,6 +39,7 @@ pub fn check(case: &Case) -> Result<(), Failure> {
             format!("{}, every file of the case is there", case.resolve(&terrain.dem).display()),
         ));
     }
+    lines.extend(case.notes().into_iter().map(|note| ("note", note)));
     let text: String = lines.iter().map(|(name, value)| format!("{name:16} {value}\n")).collect();
     print(&format!("{text}\nThe case is in order. Resolved (angles in radians):\n\n{}", case.to_toml()))
 }
@@ -113,12 +114,7 @@ fn ends(case: &Case) -> String {
     );
     ways.extend(time.end.map(|end| format!("at time {end}")));
     ways.extend(time.steps.map(|steps| format!("after {steps} steps")));
-    let limit = if time.end.is_none() && time.steps.is_none() {
-        "; no time limit: add time.end to be sure"
-    } else {
-        ""
-    };
-    format!("{}{limit}", ways.join(", or "))
+    ways.join(", or ")
 }
 
 fn grid_lines(case: &Case, grid: &Grid) -> Result<Vec<(&'static str, String)>, Failure> {
@@ -168,7 +164,7 @@ fn grid_lines(case: &Case, grid: &Grid) -> Result<Vec<(&'static str, String)>, F
     lines.push(("steps", steps(case, rate)));
     if let Stepping::Fixed(step) = case.scheme.stepping() {
         let (courant, limit) = (step * rate, case.scheme.name.courant_limit());
-        let verdict = if courant <= limit { "in order" } else { "too large: the computation will fail" };
+        let verdict = if courant <= limit { "in order" } else { "too large, the scheme is not stable there" };
         lines.push(("Courant number", format!("{courant:.4} at the start (at most {limit}): {verdict}")));
     }
     Ok(lines)

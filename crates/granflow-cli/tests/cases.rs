@@ -182,7 +182,6 @@ const ON_A_GRID: &[Bad] = &[
     ("slope = \"0 deg\"", "slope = { formula = \"2*x\" }", 8, &["at x = -5.975"], 2),
     ("slope = \"0 deg\"", "slope = { formula = \"sin(y)\" }", 8, &[":8:26: ", "unknown name `y`"], 2),
     // what the published schemes cannot do
-    ("name = \"balanced\"\nstep = 0.001", "name = \"verfahren_5\"\nfilm = 1e-6", 14, &["knows no films"], 2),
     ("steps = 100", "until = \"rest\"\n[output]\nfiles = [\"geotiff\"]", 18, &["needs [terrain]"], 2),
     ("steps = 100", "rest_speed = 1e-3\nend = 1.0", 16, &["without until"], 2),
     ("steps = 100", "until = \"steady\"", 16, &["found `steady`", "allowed: rest"], 2),
@@ -321,6 +320,20 @@ fn overrides_are_laid_over_the_case_and_blamed_by_name() {
             "{change}: {message}"
         );
     }
+}
+
+#[test]
+fn what_may_surprise_is_said() {
+    let folder = tempfile::tempdir().expect("a folder");
+    std::fs::write(folder.path().join("case.toml"), GOOD).expect("a case");
+    let said = |change: &[&str]| {
+        let arguments = [&["check", "case.toml"], change].concat();
+        String::from_utf8_lossy(&granflow(folder.path(), &arguments).stdout).into_owned()
+    };
+    let film = said(&["--set", "scheme.name=verfahren_5", "--set", "scheme.film=1e-6"]);
+    assert!(film.contains("scheme.film has no effect") && film.contains("film 0e0"), "{film}");
+    assert!(said(&["--set", "time={until=\"rest\"}"]).contains("no time limit"));
+    assert!(!said(&[]).contains("note "));
 }
 
 #[test]

@@ -1,15 +1,15 @@
 //! Everything that can be said about a case before work starts.
 
-use std::io;
-use std::path::Path;
-
-use super::fault::{CaseError, nearest};
+use super::fault::CaseError;
 use super::grid::{Axis, Grid, Side};
 use super::material::Friction;
 use super::slope::Slope;
-use super::{Case, Quantity, Release, Thickness};
+use super::{Case, Quantity};
 
-const RADIANS: &str = "a plain number is in radians: write \"18 deg\" for degrees";
+mod files;
+mod material;
+
+pub(super) use files::missing;
 
 impl Case {
     /// Checks ranges, combinations, formulas and that every file the case names exists.
@@ -24,6 +24,23 @@ impl Case {
         self.check_output()?;
         self.check_initial()?;
         self.check_terrain()
+    }
+
+    /// What is allowed but may surprise, one sentence each.
+    #[must_use]
+    pub fn notes(&self) -> Vec<String> {
+        let mut notes = Vec::new();
+        let name = self.scheme.name;
+        if name.verfahren().is_some() && self.scheme.film.is_some_and(|film| film > 0.0) {
+            notes.push(format!(
+                "{} is computed as published, without films: scheme.film has no effect",
+                name.as_str()
+            ));
+        }
+        if self.time.end.is_none() && self.time.steps.is_none() {
+            notes.push("the run has no time limit; time.end sets one".to_owned());
+        }
+        notes
     }
 
     /// `value` must be a finite number that `fits`.
@@ -157,102 +174,6 @@ impl Case {
         Ok(())
     }
 
-    fn check_material(&self) -> Result<(), CaseError> {
-        let material = &self.material;
-        self.positive("material.epsilon", material.epsilon)?;
-        self.positive("material.gravity", material.gravity)?;
-        self.positive("material.density", material.density)?;
-        self.not_negative("material.eta", material.eta)?;
-        if self.terrain.is_some() && material.density.is_none() {
-            return Err(self.fault(
-                "material.density",
-                "the key `density` is missing",
-                "the pressure on terrain needs it: density = 200.0 (kg/m^3, dry snow), 1500.0 (debris)",
-            ));
-        }
-        self.check_friction(&material.friction)?;
-        self.check_slope()
-    }
-
-    fn check_friction(&self, law: &Friction) -> Result<(), CaseError> {
-        let at = format!("material.friction.{}", law.name());
-        let key = |name: &str| format!("{at}.{name}");
-        match law.written() {
-            (Some(_), Some(_)) => {
-                let cure = format!(
-                    "keep one of angle and mu = tan(angle); with --set replace the table: --set 'material.friction={{{}={{mu=0.3}}}}'",
-                    law.name()
-                );
-                return Err(self.fault(&key("mu"), "both `angle` and `mu` are given", &cure));
-            }
-            (None, None) => {
-                return Err(self.fault(
-                    &at,
-                    "neither `angle` nor `mu` is given",
-                    "add angle = \"25 deg\" or mu = 0.4",
-                ));
-            }
-            (Some(angle), None) => {
-                let fits = |v: f64| (0.0..std::f64::consts::FRAC_PI_2).contains(&v);
-                self.number(
-                    &key("angle"),
-                    angle.radians(),
-                    fits,
-                    "an angle from 0 to below 90 deg (1.5708 rad)",
-                )
-                .map_err(|error| error.help(RADIANS))?;
-            }
-            (None, mu) => self.not_negative(&key("mu"), mu)?,
-        }
-        match law {
-            Friction::Coulomb(_) => Ok(()),
-            Friction::Voellmy(law) => self.positive(&key("xi"), Some(law.xi)),
-            Friction::Cohesion(law) => self.not_negative(&key("tau0"), Some(law.tau0)),
-            Friction::Samosat(law) => {
-                self.not_negative(&key("tau0"), Some(law.tau0))?;
-                self.not_negative(&key("rs0"), Some(law.rs0))?;
-                self.positive(&key("kappa"), Some(law.kappa))?;
-                self.positive(&key("r"), Some(law.r))?;
-                self.positive(&key("b"), Some(law.b))
-            }
-        }
-    }
-
-    fn check_slope(&self) -> Result<(), CaseError> {
-        let fits = |v: f64| v.abs() < std::f64::consts::FRAC_PI_2;
-        let steep = |key: &str, value: f64| {
-            self.number(key, value, fits, "an angle between -90 deg and 90 deg (1.5708 rad)")
-                .map_err(|error| error.help(RADIANS))
-        };
-        match &self.material.slope {
-            None => return Ok(()),
-            Some(Slope::Constant(angle)) => return steep("material.slope", angle.radians()),
-            Some(Slope::Profile(profile)) => {
-                for (index, angle) in profile.angle.iter().flatten().enumerate() {
-                    steep(&format!("material.slope.angle[{index}]"), angle.radians())?;
-                }
-                for (index, x) in profile.x.iter().flatten().enumerate() {
-                    self.number(&format!("material.slope.x[{index}]"), *x, |_| true, "a finite number")?;
-                }
-            }
-        }
-        let chute = self.chute()?;
-        let Some(grid) = &self.grid else { return Ok(()) };
-        for cell in 0..grid.x.cells {
-            let (x, low, high) = (grid.x.centre(cell), grid.x.face(cell), grid.x.face(cell + 1));
-            let (zeta, kappa) = (chute.zeta(x), chute.kappa(low, high));
-            if !fits(zeta) || !kappa.is_finite() {
-                let message = format!("at x = {x} the slope is {zeta} rad and its curvature {kappa}");
-                return Err(self.fault(
-                    "material.slope",
-                    message,
-                    "expected an angle between -90 deg and 90 deg and a finite curvature",
-                ));
-            }
-        }
-        Ok(())
-    }
-
     fn check_scheme(&self) -> Result<(), CaseError> {
         let scheme = &self.scheme;
         if scheme.step.is_some() && scheme.courant.is_some() {
@@ -287,13 +208,6 @@ impl Case {
         }
         if matches!(self.material.slope, Some(Slope::Profile(_))) {
             return refuse("material.slope", "works on a constant slope only");
-        }
-        if scheme.film.is_some() {
-            return Err(self.fault(
-                "scheme.film",
-                format!("{name} knows no films"),
-                "remove film; the published schemes are kept as published",
-            ));
         }
         Ok(())
     }
@@ -378,96 +292,5 @@ impl Case {
             self.check_file(&format!("initial.{name}.file"), path)?;
         }
         self.initial_state().map(|_| ())
-    }
-
-    fn check_terrain(&self) -> Result<(), CaseError> {
-        let Some(terrain) = &self.terrain else { return Ok(()) };
-        self.positive("terrain.cell", terrain.cell)?;
-        self.positive("terrain.curvature.length", terrain.curvature.length())?;
-        for (index, release) in self.release.iter().enumerate() {
-            self.check_release(&format!("release[{index}]"), release)?;
-        }
-        self.check_file("terrain.dem", &terrain.dem)?;
-        for (index, release) in self.release.iter().enumerate() {
-            for (name, path) in [("polygons", &release.polygons), ("raster", &release.raster)] {
-                if let Some(path) = path {
-                    self.check_file(&format!("release[{index}].{name}"), path)?;
-                }
-            }
-        }
-        Ok(())
-    }
-
-    fn check_release(&self, key: &str, release: &Release) -> Result<(), CaseError> {
-        let given = [release.polygons.is_some(), release.raster.is_some(), release.cap.is_some()];
-        if given.iter().filter(|given| **given).count() != 1 {
-            return Err(self.fault(
-                key,
-                "a release has exactly one of polygons, raster, cap",
-                "split it into several [[release]] tables, or remove what is too much",
-            ));
-        }
-        let thickness = format!("{key}.thickness");
-        match (&release.thickness, release.polygons.is_some()) {
-            (None, true) => {
-                return Err(self.fault(
-                    &thickness,
-                    "the key `thickness` is missing",
-                    "add thickness = 1.0 (metres) or thickness = { attribute = \"thickness\" }",
-                ));
-            }
-            (Some(_), false) => {
-                return Err(self.fault(
-                    &thickness,
-                    "`thickness` belongs to polygons",
-                    "remove it: a raster or a cap has its own thickness",
-                ));
-            }
-            (Some(Thickness::Constant(value)), true) => self.positive(&thickness, Some(*value))?,
-            _ => {}
-        }
-        if let Some(cap) = &release.cap {
-            self.positive(&format!("{key}.cap.height"), Some(cap.height))?;
-            self.positive(&format!("{key}.cap.radius"), Some(cap.radius))?;
-            for (index, value) in cap.centre.iter().enumerate() {
-                self.number(&format!("{key}.cap.centre[{index}]"), *value, |_| true, "a finite number")?;
-            }
-        }
-        Ok(())
-    }
-
-    /// The file under `key` must exist and be a file.
-    fn check_file(&self, key: &str, path: &Path) -> Result<(), CaseError> {
-        let found = self.resolve(path);
-        let error = match std::fs::metadata(&found) {
-            Ok(about) if about.is_file() => return Ok(()),
-            Ok(_) => io::Error::new(io::ErrorKind::InvalidInput, "it is not a file"),
-            Err(error) => error,
-        };
-        let fault = self.source.fault(key, format!("cannot read {}: {error}", found.display())).file();
-        Err(with_neighbour(fault, &found))
-    }
-}
-
-/// The error for a file that cannot be read, with the nearest name beside it.
-pub(super) fn missing(path: &Path, error: &io::Error, name: &str) -> CaseError {
-    with_neighbour(CaseError::unreadable(name, format!("cannot read the case file: {error}")), path)
-}
-
-fn with_neighbour(error: CaseError, path: &Path) -> CaseError {
-    let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
-    let wanted = path.file_name().map(|name| name.to_string_lossy().into_owned()).unwrap_or_default();
-    let names: Vec<String> = std::fs::read_dir(folder)
-        .into_iter()
-        .flatten()
-        .flatten()
-        .filter(|entry| entry.path().is_file())
-        .map(|entry| entry.file_name().to_string_lossy().into_owned())
-        .filter(|name| *name != wanted)
-        .collect();
-    match nearest(&wanted, names.iter().map(String::as_str)) {
-        Some(near) => error.help(format!("did you mean `{}`?", path.with_file_name(near).display())),
-        None if !folder.is_dir() => error.help(format!("the folder {} does not exist", folder.display())),
-        None => error,
     }
 }

@@ -4,8 +4,11 @@
 //! to the right, `*` and `/` come before `+` and `-`, comparisons come last and give 1 or 0. Names are those of C
 //! and NumPy. An error knows the byte at which it stands.
 
+type One = fn(f64) -> f64;
+type Two = fn(f64, f64) -> f64;
+
 /// Functions of one number.
-const UNARY: &[(&str, fn(f64) -> f64)] = &[
+const UNARY: &[(&str, One)] = &[
     ("abs", f64::abs),
     ("acos", f64::acos),
     ("asin", f64::asin),
@@ -27,14 +30,14 @@ const UNARY: &[(&str, fn(f64) -> f64)] = &[
 ];
 
 /// Functions of two numbers; `min` and `max` take more.
-const BINARY: &[(&str, fn(f64, f64) -> f64)] =
+const BINARY: &[(&str, Two)] =
     &[("atan2", f64::atan2), ("hypot", f64::hypot), ("max", f64::max), ("min", f64::min)];
 
 /// Names of the choice `if(condition, then, otherwise)`.
 const CHOICE: &[&str] = &["if", "where"];
 
 /// Comparisons, the longer ones first.
-const COMPARE: &[(&str, fn(f64, f64) -> f64)] = &[
+const COMPARE: &[(&str, Two)] = &[
     ("<=", |a, b| f64::from(a <= b)),
     (">=", |a, b| f64::from(a >= b)),
     ("==", |a, b| f64::from(a == b)),
@@ -43,6 +46,8 @@ const COMPARE: &[(&str, fn(f64, f64) -> f64)] = &[
     (">", |a, b| f64::from(a > b)),
 ];
 
+/// How long a formula may be in bytes; its tree is never deeper.
+const LONGEST: usize = 10_000;
 /// How deep parentheses, signs and powers may nest.
 const DEEPEST: usize = 200;
 
@@ -68,8 +73,8 @@ pub struct FormulaError {
 enum Node {
     Number(f64),
     Variable(usize),
-    Unary(fn(f64) -> f64, Box<Node>),
-    Binary(fn(f64, f64) -> f64, Box<[Node; 2]>),
+    Unary(One, Box<Node>),
+    Binary(Two, Box<[Node; 2]>),
     Choice(Box<[Node; 3]>),
 }
 
@@ -79,6 +84,10 @@ impl Formula {
     /// # Errors
     /// [`FormulaError`] with the place of the first part that cannot be understood.
     pub fn parse(text: &str, variables: &[&str]) -> Result<Self, FormulaError> {
+        if text.len() > LONGEST {
+            let message = format!("the formula has {} bytes, at most {LONGEST} are read", text.len());
+            return Err(FormulaError { message, at: 0, length: 0 });
+        }
         let mut reader = Reader { text, at: 0, depth: 0, variables };
         let root = reader.comparison()?;
         reader.skip_space();
@@ -159,7 +168,7 @@ impl<'a> Reader<'a> {
     fn sum(&mut self) -> Result<Node, FormulaError> {
         let mut left = self.product()?;
         loop {
-            let apply: fn(f64, f64) -> f64 = if self.take("+") {
+            let apply: Two = if self.take("+") {
                 |a, b| a + b
             } else if self.take("-") {
                 |a, b| a - b
@@ -173,7 +182,7 @@ impl<'a> Reader<'a> {
     fn product(&mut self) -> Result<Node, FormulaError> {
         let mut left = self.signed()?;
         loop {
-            let apply: fn(f64, f64) -> f64 = if self.take("*") {
+            let apply: Two = if self.take("*") {
                 |a, b| a * b
             } else if self.take("/") {
                 |a, b| a / b
@@ -211,7 +220,7 @@ impl<'a> Reader<'a> {
         let exponent = self.signed()?;
         self.depth -= 1;
         // a small whole power is a product: exact where the product is, and the same on every machine
-        let apply: fn(f64, f64) -> f64 = |a, b| {
+        let apply: Two = |a, b| {
             if b == 2.0 {
                 a * a
             } else if b.fract() == 0.0 && b.abs() < 1e9 {
@@ -375,7 +384,9 @@ mod tests {
         assert!(fails("min(x)").1.contains("1 argument"));
         assert!(fails("1.2.3").1.contains("not a number"));
         assert_eq!(fails("").0, 0);
-        assert!(fails(&"(".repeat(100_000)).1.contains("nested"));
-        assert!(fails(&format!("x{}", "^x".repeat(100_000))).1.contains("powers"));
+        assert!(fails(&"(".repeat(9_000)).1.contains("nested"));
+        assert!(fails(&format!("x{}", "^x".repeat(4_000))).1.contains("powers"));
+        assert!(fails(&"x+".repeat(100_000)).1.contains("bytes"));
+        assert_eq!(value(&format!("x{}", "+x".repeat(4_999)), 1.0, 0.0), 5000.0);
     }
 }

@@ -16,7 +16,7 @@ pub struct Scheme {
     /// Courant number of the adaptive step: at most 1 (default 0.9) at first order, 0.5 (default 0.45) at second.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub courant: Option<f64>,
-    /// Thickness below which a cell is a film and is held (default 1e-6; 0 is allowed; not for verfahren_1..5).
+    /// Thickness below which a cell is a film and is held (default 1e-6; 0 is allowed; without effect on verfahren_1..5).
     #[serde(skip_serializing_if = "Option::is_none")]
     pub film: Option<f64>,
 }
@@ -103,9 +103,9 @@ impl Scheme {
         }
     }
 
-    /// Thickness below which a cell is a film; the published methods know none.
+    /// Thickness below which a cell is a film; the published methods know none, so it is 0 for them.
     #[must_use]
     pub fn film(&self) -> f64 {
-        self.film.unwrap_or(if self.name.verfahren().is_some() { 0.0 } else { 1e-6 })
+        if self.name.verfahren().is_some() { 0.0 } else { self.film.unwrap_or(1e-6) }
     }
 }

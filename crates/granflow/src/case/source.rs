@@ -180,14 +180,18 @@ impl Source {
                 plain(format!("unknown key `{found}` in {table}")).allowed(found, known.iter().copied())
             }
             [found, known @ ..] if message.starts_with("unknown variant") => {
-                plain(format!("found `{found}`, which is not one of the choices")).allowed(found, known.iter().copied())
+                plain(format!("found `{found}`, which is not one of the choices"))
+                    .allowed(found, known.iter().copied())
             }
             [field] if message.starts_with("missing field") => {
                 let full = if key.is_empty() { (*field).to_owned() } else { format!("{key}.{field}") };
-                self.at(span.clone(), &full, format!("the key `{field}` is missing")).help(cure_missing(field, key))
+                self.at(span.clone(), &full, format!("the key `{field}` is missing"))
+                    .help(cure_missing(field, key))
             }
-            _ if message.starts_with("wanted exactly 1 element") => plain("exactly one choice is wanted here".into())
-                .help("keep one of them; to change a choice with --set, replace its whole table: --set 'material.friction={coulomb={mu=0.3}}'"),
+            _ if message.starts_with("wanted exactly 1 element") => plain(
+                "exactly one choice is wanted here".into(),
+            )
+            .help(format!("keep one of them; with --set, replace the whole choice: --set '{key}={{...}}'")),
             _ => plain(friendly(message)),
         }
     }
