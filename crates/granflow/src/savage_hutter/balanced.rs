@@ -207,7 +207,12 @@ impl<F: Friction, const D: usize, R: Real, B: Bed<D, R>> Scheme<D, R> for Balanc
                 for axis in 0..D {
                     let (a, b) = (&near.lo[axis].state, &near.hi[axis].state);
                     let (ua, ub) = (a.velocity(), b.velocity());
-                    let half = R::of(0.5);
+                    // Beside a cell at rest or bare there is no smooth flow to be second order in.
+                    let rests = |cell: &Cell<Flow<D, R>, B>| {
+                        cell.state.is_still() | self.is_void(cell.state.h, &cell.ground)
+                    };
+                    let smooth = !(rests(&near.lo[axis]) | rests(&near.hi[axis]));
+                    let half = R::select(smooth, R::of(0.5), zero);
                     let dh = half * limiter::central(state.h - a.h, b.h - state.h);
                     (hlo[axis], hhi[axis]) = ((state.h - dh).positive(), (state.h + dh).positive());
                     for k in 0..D {
