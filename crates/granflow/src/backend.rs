@@ -37,6 +37,10 @@ pub struct Tally {
     pub speed: f64,
     /// Kinetic energy per density and cell measure.
     pub energy: f64,
+    /// Volume per cell measure.
+    pub volume: f64,
+    /// Part of it in films.
+    pub film: f64,
     /// Cells with a depth.
     pub wet: usize,
     /// Cells with a momentum.
@@ -55,6 +59,8 @@ impl Tally {
         rate: 0.0,
         speed: 0.0,
         energy: 0.0,
+        volume: 0.0,
+        film: 0.0,
         wet: 0,
         moving: 0,
         out: [0.0; 5],
@@ -257,6 +263,8 @@ impl<const D: usize, S: Scheme<D, f64>> Sweep<'_, D, S> {
         tally.rate = if tally.rate < rate { rate } else { tally.rate };
         tally.speed = if tally.speed < watch.speed { watch.speed } else { tally.speed };
         tally.energy += watch.energy;
+        tally.volume += watch.volume;
+        tally.film += watch.volume * watch.film;
         tally.wet += usize::from(watch.volume > 0.0);
         tally.moving += usize::from(watch.speed > 0.0);
         if let Some([thickness, speed, arrival, stop]) = maps {

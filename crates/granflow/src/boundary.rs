@@ -20,14 +20,17 @@ pub fn fill<const D: usize, P: Parts<f64>>(
                 let edge = if side == 0 { 0 } else { last };
                 let inward = if side == 0 { edge + ghost } else { edge - ghost };
                 let source = match grid.boundary[axis][side] {
-                    Boundary::Open => edge,
+                    Boundary::Open | Boundary::Nothing => edge,
                     Boundary::Wall => inward,
                     Boundary::Periodic => last - inward, // -1 - k is last - k, last + 1 + k is k
                 };
                 for j in 0..across {
                     let value: P = field.get(place(source, j));
-                    let value =
-                        if grid.boundary[axis][side] == Boundary::Wall { mirror(axis, value) } else { value };
+                    let value = match grid.boundary[axis][side] {
+                        Boundary::Wall => mirror(axis, value),
+                        Boundary::Nothing => P::gather(|_| 0.0),
+                        Boundary::Open | Boundary::Periodic => value,
+                    };
                     field.set(place(target, j), value);
                 }
             }

@@ -69,8 +69,7 @@ pub enum Side {
 }
 
 /// What happens at the end of an axis of the grid.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize, serde::Deserialize, schemars::JsonSchema)]
-#[serde(rename_all = "snake_case")]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Boundary {
     /// Transmissive: the ghost cells copy the edge cell.
     Open,
@@ -78,6 +77,8 @@ pub enum Boundary {
     Wall,
     /// The two ends of the axis are joined.
     Periodic,
+    /// Nothing lies beyond: what leaves is booked and gone, nothing comes back. The edge of a raster.
+    Nothing,
 }
 
 /// A finite-volume scheme: U -> E_dt(U), written for one cell and one face.
@@ -121,6 +122,8 @@ pub trait Scheme<const D: usize, R: Real>: Send + Sync {
     fn outside(&self, ground: &Self::Ground) -> R::Mask;
     /// Volume per time and face length that the cell on `side` books as leaving it to the other side.
     fn booked(&self, flux: &Self::Flux, side: Side) -> R;
+    /// Pull of the mass if it were at rest, as a share of the static bound: up to 1 it stays; 0 where dry.
+    fn margin(&self, near: &Near<D, R, Self::State, Self::Ground>) -> R;
     /// What the run keeps watch of in a cell.
     fn watch(&self, here: &Cell<Self::State, Self::Ground>) -> Watch<R>;
 }

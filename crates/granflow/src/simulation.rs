@@ -5,7 +5,7 @@ use crate::boundary;
 use crate::field::Field;
 use crate::grid::{Grid, Layout};
 use crate::observe::Maps;
-use crate::scheme::{Cell, Scheme, Spacing, Watch};
+use crate::scheme::{Boundary, Cell, Near, Scheme, Spacing, Watch};
 use crate::time::Stages;
 
 /// How long a step is.
@@ -209,6 +209,22 @@ impl<const D: usize, S: Scheme<D, f64>> Simulation<D, S> {
     pub fn watch(&self, index: [usize; D]) -> Watch<f64> {
         self.scheme.watch(&self.cell(index))
     }
+    /// Pull as a share of the static bound, [`Scheme::margin`], in every cell, x fastest.
+    pub fn margins(&mut self) -> Vec<f64> {
+        boundary::fill(&mut self.now, &self.grid, &self.layout, |axis, s| self.scheme.mirror(axis, &s));
+        let cell = |place: usize| Cell { state: self.now.get(place), ground: self.grounds.get(place) };
+        let margin = |number: usize| {
+            let place = self.place(self.grid.index(number));
+            let here: Cell<S::State, S::Ground> = cell(place);
+            if self.scheme.outside(&here.ground) {
+                return 0.0;
+            }
+            let lo = std::array::from_fn(|axis| cell(place - self.layout.step(axis)));
+            let hi = std::array::from_fn(|axis| cell(place + self.layout.step(axis)));
+            self.scheme.margin(&Near { here, lo, hi, spacing: self.spacing })
+        };
+        (0..self.grid.count()).map(margin).collect()
+    }
     /// A value of every cell, x fastest.
     pub fn collect<T>(&self, value: impl Fn(&Cell<S::State, S::Ground>) -> T) -> Vec<T> {
         (0..self.grid.count()).map(|number| value(&self.cell(self.grid.index(number)))).collect()
@@ -237,11 +253,9 @@ impl<const D: usize, S: Scheme<D, f64>> Simulation<D, S> {
     /// Sums over all cells, compensated and in fixed order.
     pub fn totals(&self) -> Totals {
         let (mut volume, mut film) = (Sum::default(), Sum::default());
-        for number in 0..self.grid.count() {
-            let index = self.grid.index(number);
-            let watch = self.watch(index);
-            volume.add(watch.volume);
-            film.add(watch.volume * watch.film);
+        for tally in &self.tallies {
+            volume.add(tally.volume);
+            film.add(tally.film);
         }
         let (moving, wet) = self.counts();
         let measure = self.grid.measure();
@@ -270,6 +284,8 @@ impl<const D: usize, S: Scheme<D, f64>> Simulation<D, S> {
                     tally.rate = tally.rate.max(self.scheme.rate(&cell, &self.spacing));
                     tally.speed = tally.speed.max(watch.speed);
                     tally.energy += watch.energy;
+                    tally.volume += watch.volume;
+                    tally.film += watch.volume * watch.film;
                     tally.wet += usize::from(watch.volume > 0.0);
                     tally.moving += usize::from(watch.speed > 0.0);
                 }
@@ -357,7 +373,7 @@ impl<const D: usize, S: Scheme<D, f64>> Simulation<D, S> {
 
     /// Tiles at a periodic end never sleep: their neighbours are at the other end.
     fn wraps(&self, x: usize, y: usize, across: usize, up: usize) -> bool {
-        let periodic = |axis: usize| self.grid.boundary[axis][0] == crate::scheme::Boundary::Periodic;
+        let periodic = |axis: usize| self.grid.boundary[axis][0] == Boundary::Periodic;
         let at_end = |place: usize, count: usize| place == 0 || place + 1 == count;
         let all_quiet = self.quiet.iter().all(|quiet| *quiet);
         !all_quiet && ((periodic(0) && at_end(x, across)) || (D > 1 && periodic(D - 1) && at_end(y, up)))

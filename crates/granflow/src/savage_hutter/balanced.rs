@@ -154,6 +154,37 @@ impl<F: Friction, B: Copy> Balanced<F, B> {
     }
 }
 
+/// How a mass would stand in its cell at rest.
+struct Stance<const D: usize, R> {
+    rise: [[R; 2]; D],
+    weight: [[R; 2]; D],
+    /// F = -M grad(psi).
+    pull: [R; D],
+    /// The static bound of |F|.
+    holding: R,
+}
+
+impl<F: Friction, B: Copy> Balanced<F, B> {
+    #[inline(always)]
+    fn stance<const D: usize, R: Real>(&self, near: &Near<D, R, Flow<D, R>, B>) -> Stance<D, R>
+    where
+        B: Bed<D, R>,
+    {
+        let Cell { state, ground } = &near.here;
+        let zero = R::zero();
+        let (mut rise, mut weight) = ([[zero; 2]; D], [[zero; 2]; D]);
+        let (mut lo, mut hi) = ([zero; D], [zero; D]);
+        for axis in 0..D {
+            (rise[axis], weight[axis]) = self.rises(near, axis);
+            (lo[axis], hi[axis]) = (rise[axis][0], rise[axis][1]);
+        }
+        let at_rest = ground.weight_at_rest();
+        let thickness = ground.thickness(state.h).max(R::of(f64::MIN_POSITIVE));
+        let holding = self.friction.resistance(thickness, zero, at_rest, at_rest).holding;
+        Stance { rise, weight, pull: ground.pull(lo, hi, near.spacing.per), holding }
+    }
+}
+
 impl<F: Friction, const D: usize, R: Real, B: Bed<D, R>> Scheme<D, R> for Balanced<F, B> {
     type State = Flow<D, R>;
     type Ground = B;
@@ -165,21 +196,9 @@ impl<F: Friction, const D: usize, R: Real, B: Bed<D, R>> Scheme<D, R> for Balanc
         let Cell { state, ground } = near.here;
         let (per, zero) = (near.spacing.per, R::zero());
         let u = state.velocity();
-        let (mut rise, mut weight) = ([[zero; 2]; D], [[zero; 2]; D]);
-        for axis in 0..D {
-            (rise[axis], weight[axis]) = self.rises(near, axis);
-        }
-
+        let Stance { rise, weight, pull, holding } = self.stance(near);
         let void = self.is_void(state.h, &ground);
-        let at_rest = ground.weight_at_rest();
-        let thickness = ground.thickness(state.h).max(R::of(f64::MIN_POSITIVE));
-        let holding = self.friction.resistance(thickness, zero, at_rest, at_rest).holding * R::of(Self::SLACK);
-        let (mut rise_lo, mut rise_hi) = ([zero; D], [zero; D]);
-        for axis in 0..D {
-            (rise_lo[axis], rise_hi[axis]) = (rise[axis][0], rise[axis][1]);
-        }
-        let pull = ground.pull(rise_lo, rise_hi, per);
-        let bound = holding + ground.rounding(state.h, per[0]);
+        let bound = holding * R::of(Self::SLACK) + ground.rounding(state.h, per[0]);
         let mut held = ground.square(pull).le(bound * bound) & state.is_still() & !void;
         // A symmetric tower pulls nowhere, yet falls: bound the drop towards each neighbour too.
         for axis in 0..D {
@@ -364,6 +383,11 @@ impl<F: Friction, const D: usize, R: Real, B: Bed<D, R>> Scheme<D, R> for Balanc
     #[inline(always)]
     fn booked(&self, flux: &Flux<D, R>, _side: Side) -> R {
         flux.mass
+    }
+    fn margin(&self, near: &Near<D, R, Flow<D, R>, B>) -> R {
+        let Stance { pull, holding, .. } = self.stance(near);
+        let void = self.is_void(near.here.state.h, &near.here.ground);
+        R::select(void, R::zero(), near.here.ground.square(pull).sqrt() / holding)
     }
     #[inline(always)]
     fn watch(&self, here: &Cell<Flow<D, R>, B>) -> Watch<R> {

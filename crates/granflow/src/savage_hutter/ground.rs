@@ -61,7 +61,7 @@ fn straight<const D: usize, R: Real>(lo: [R; D], hi: [R; D], per: [R; D]) -> [R;
 
 /// The papers' chute (report eqs. 1 and 13), in their scaling; also a tilted plane in two dimensions.
 ///
-/// psi = beta h per cell pair with P = beta h^2/2: a variable beta enters as h (beta_hi - beta_lo)/2.
+/// A cell outside the grid has cos = 0. psi = beta h per cell pair with P = beta h^2/2: a variable beta enters as h (beta_hi - beta_lo)/2.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Chute<const D: usize, R> {
     /// sin(zeta), as a vector down the slope.
@@ -160,7 +160,7 @@ impl<const D: usize, R: Real> Bed<D, R> for Chute<D, R> {
     }
     #[inline(always)]
     fn outside(&self) -> R::Mask {
-        self.cos.lt(R::zero())
+        self.cos.le(R::zero())
     }
     fn mirror(mut self, axis: usize) -> Self {
         self.tilt[axis] = -self.tilt[axis];

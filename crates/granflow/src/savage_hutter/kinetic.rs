@@ -255,6 +255,12 @@ impl<const D: usize, R: Real> Scheme<D, R> for Kinetic {
     fn booked(&self, flux: &Flux<D, R>, _side: Side) -> R {
         flux.moving.h
     }
+    fn margin(&self, near: &Near<D, R, Flow<D, R>, Chute<D, R>>) -> R {
+        let Cell { state, ground } = near.here;
+        let excess = self.reconstruct(near).excess;
+        let bound = self.friction.resistance(state.h, R::zero(), ground.cos, ground.cos).holding;
+        R::select(state.h.le(R::zero()), R::zero(), dot(excess, excess).sqrt() / bound)
+    }
     #[inline(always)]
     fn watch(&self, here: &Cell<Flow<D, R>, Chute<D, R>>) -> Watch<R> {
         here.state.watch(&here.ground, R::zero())
