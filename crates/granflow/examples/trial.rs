@@ -22,7 +22,7 @@ fn main() {
     let m = ((len / (2.0 * dx)).round() as isize).max(1);
     let at = |i: isize, j: isize| if i < 0 || j < 0 || i >= nx as isize || j >= ny as isize { f64::NAN } else { b[j as usize * nx + i as usize] };
     let g = 9.81;
-    let mut grounds = vec![Terrain::<2, f64>::outside(); nx * ny];
+    let mut grounds = vec![Terrain::<2, f64>::nothing(); nx * ny];
     for j in 0..ny as isize { for i in 0..nx as isize {
         let z = at(i, j); if z.is_nan() { continue; }
         let mut a = [[0.0f64; 7]; 6]; let mut n = 0;

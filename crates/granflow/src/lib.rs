@@ -13,6 +13,7 @@ pub mod real;
 pub mod release;
 pub mod savage_hutter;
 pub mod scheme;
+pub mod setup;
 pub mod simulation;
 pub mod terrain;
 pub mod time;

@@ -26,6 +26,26 @@ impl Maps {
             stopping_time: vec![f64::NAN; layout.len()],
         }
     }
+    /// The maps with the names that the result files give them.
+    pub fn named(&self) -> impl Iterator<Item = (&'static str, &[f64])> {
+        [
+            ("peak_thickness", self.peak_thickness.as_slice()),
+            ("peak_speed", &self.peak_speed),
+            ("arrival_time", &self.arrival_time),
+            ("stopping_time", &self.stopping_time),
+        ]
+        .into_iter()
+    }
+    /// As [`Maps::named`], to be overwritten.
+    pub fn named_mut(&mut self) -> impl Iterator<Item = (&'static str, &mut Vec<f64>)> {
+        [
+            ("peak_thickness", &mut self.peak_thickness),
+            ("peak_speed", &mut self.peak_speed),
+            ("arrival_time", &mut self.arrival_time),
+            ("stopping_time", &mut self.stopping_time),
+        ]
+        .into_iter()
+    }
     pub(crate) fn sheets(&mut self) -> [Sheet<'_>; 4] {
         [
             Sheet::new(&mut self.peak_thickness),

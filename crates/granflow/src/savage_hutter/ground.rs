@@ -190,7 +190,7 @@ pub struct Terrain<const D: usize, R> {
 
 impl<const D: usize, R: Real> Terrain<D, R> {
     /// A cell outside the data.
-    pub fn outside() -> Self {
+    pub fn nothing() -> Self {
         let zero = R::zero();
         Terrain {
             level: zero,
@@ -211,6 +211,48 @@ impl<const D: usize, R: Real> Terrain<D, R> {
     }
 }
 
+impl Terrain<2, f64> {
+    /// The ground of every cell of a mountain under `gravity` \[m/s^2\], x fastest, the first row in the south.
+    pub fn cells(mountain: &crate::terrain::Terrain, gravity: f64) -> Vec<Self> {
+        let bed = &mountain.bed;
+        let cell = |number: usize| {
+            let (z, slope) = (bed.values[number], mountain.gradient[number]);
+            if z.is_nan() {
+                return Self::nothing();
+            }
+            let cos = mountain.cosine(number);
+            let [xx, xy, yy] = mountain.hessian[number].map(|second| cos * second);
+            Terrain {
+                level: gravity * z,
+                slope,
+                cos,
+                fall: gravity * cos,
+                curvature: [[xx, xy], [xy, yy]],
+                bend: [0.0; 2],
+            }
+        };
+        let flat: Vec<Self> = (0..bed.values.len()).map(cell).collect();
+        let bent = |number: usize| {
+            let mut here = flat[number];
+            let place = [number % bed.columns, number / bed.columns];
+            for (axis, (step, count)) in [(1, bed.columns), (bed.columns, bed.rows)].into_iter().enumerate() {
+                if place[axis] == 0 || place[axis] + 1 == count {
+                    continue;
+                }
+                let (lo, hi) = (&flat[number - step], &flat[number + step]);
+                if !(lo.outside() || hi.outside() || here.outside()) {
+                    let s = here.cos * here.slope[axis];
+                    let pressure = (hi.beta(axis) - lo.beta(axis)) / (4.0 * bed.cell);
+                    let tilt = (hi.fall * hi.cos - lo.fall * lo.cos) / (2.0 * bed.cell);
+                    here.bend[axis] = pressure - (1.0 - s * s) * tilt;
+                }
+            }
+            here
+        };
+        (0..flat.len()).map(bent).collect()
+    }
+}
+
 impl<const D: usize, R: Real> Parts<R> for Terrain<D, R> {
     const COUNT: usize = 3 + 2 * D + D * (D + 1) / 2;
     #[inline(always)]
@@ -220,7 +262,7 @@ impl<const D: usize, R: Real> Parts<R> for Terrain<D, R> {
             3 + 2 * D + i * D + j - i * (i + 1) / 2
         };
         let mut cell =
-            Terrain { level: part(0), cos: part(1), fall: part(2), ..Terrain::outside() };
+            Terrain { level: part(0), cos: part(1), fall: part(2), ..Terrain::nothing() };
         for i in 0..D {
             cell.slope[i] = part(3 + i);
             cell.bend[i] = part(3 + D + i);

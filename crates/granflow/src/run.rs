@@ -1,0 +1,517 @@
+//! A run from its case to its end: steps, books, frames, checkpoints, and why it stopped.
+
+use crate::backend::EXITS;
+use crate::case::{self, Case};
+use crate::field::Field;
+use crate::observe::Maps;
+use crate::output::checkpoint::{Checkpoint, case_hash};
+use crate::output::frames::{self, Frames};
+use crate::output::ledger::{Entry, Ledger};
+use crate::output::summary::{StopReason, Summary};
+use crate::output::{self, Precision};
+use crate::results::{Finished, Plane};
+use crate::savage_hutter::Flow;
+use crate::savage_hutter::ground::Bed;
+use crate::scheme::Scheme;
+use crate::setup::{Scene, SetupError, Visit};
+use crate::simulation::{Failure, Simulation};
+use std::borrow::Cow;
+use std::path::{Path, PathBuf};
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::time::Instant;
+
+/// Ledger lines between two frames.
+const LINES: f64 = 10.0;
+/// Seconds on the clock between two checkpoints.
+const CHECKPOINT: f64 = 30.0;
+/// The series are joined into `result.nc` again once this many times the last join's cost has passed.
+const JOIN: f64 = 20.0;
+
+/// What is not in the case: where, with how many threads, whether to go on.
+#[derive(Debug, Clone)]
+pub struct Options {
+    /// Folder of the results.
+    pub directory: PathBuf,
+    /// Threads; 0 takes all cores.
+    pub threads: usize,
+    /// Go on from the checkpoint in the folder.
+    pub resume: bool,
+    /// The command, for the history of the result.
+    pub command: String,
+}
+
+/// Where a run is.
+#[derive(Debug, Clone, Copy)]
+pub struct Status {
+    /// Simulated time.
+    pub time: f64,
+    /// Steps done.
+    pub step: u64,
+    /// Cells with a depth.
+    pub wet_cells: usize,
+    /// Largest speed along the bed.
+    pub max_speed: f64,
+}
+
+/// Why a run did not end as its case says.
+#[derive(Debug, thiserror::Error)]
+pub enum RunError {
+    /// The case or one of its files cannot be used.
+    #[error(transparent)]
+    Setup(#[from] SetupError),
+    /// A file of the results could not be read or written.
+    #[error(transparent)]
+    Output(#[from] output::Error),
+    /// The computation failed; the state before is saved.
+    #[error("{failure}; everything up to time {time} is saved in {}", saved.display())]
+    Computation {
+        /// What happened.
+        failure: Failure,
+        /// Time of the last saved state.
+        time: f64,
+        /// Where.
+        saved: PathBuf,
+    },
+    /// The threads could not be started.
+    #[error("cannot start the threads: {0}; try a smaller --threads")]
+    Threads(String),
+    /// The folder holds no checkpoint of this case.
+    #[error("cannot resume from {}: {problem}; run without --resume to start anew", directory.display())]
+    Resume {
+        /// The folder.
+        directory: PathBuf,
+        /// What does not fit.
+        problem: String,
+    },
+}
+
+/// Compute a case and write `result.nc`, `summary.json`, `mass.csv`; `stop` ends it at the next step, `report` hears of
+/// every step. Figures and further files are made of what is returned ([`Finished`]).
+///
+/// # Errors
+/// [`RunError`]; what was complete before stays complete.
+pub fn run(
+    case: &Case,
+    options: &Options,
+    stop: &AtomicBool,
+    report: &mut (dyn FnMut(&Status) + Send),
+) -> Result<Finished, RunError> {
+    let clock = Instant::now();
+    let scene = Scene::load(case)?;
+    let pool = rayon::ThreadPoolBuilder::new()
+        .num_threads(options.threads)
+        .build()
+        .map_err(|error| RunError::Threads(error.to_string()))?;
+    // The loop itself is one of the pool's threads: a step then needs no queue, and no allocation.
+    pool.install(|| scene.simulate(case, Work { case, options, scene: &scene, stop, report, clock }))
+}
+
+struct Work<'a> {
+    case: &'a Case,
+    options: &'a Options,
+    scene: &'a Scene,
+    stop: &'a AtomicBool,
+    report: &'a mut (dyn FnMut(&Status) + Send),
+    clock: Instant,
+}
+
+impl Visit for Work<'_> {
+    type Output = Result<Finished, RunError>;
+    fn visit<const D: usize, S>(self, simulation: Simulation<D, S>) -> Self::Output
+    where
+        S: Scheme<D, f64, State = Flow<D, f64>>,
+        S::Ground: Bed<D, f64>,
+    {
+        Run::start(self, simulation)?.go()
+    }
+}
+
+/// A run under way.
+struct Run<'a, const D: usize, S: Scheme<D, f64>> {
+    work: Work<'a>,
+    simulation: Simulation<D, S>,
+    plane: Plane,
+    frames: Frames,
+    ledger: Ledger,
+    /// Volume at the start.
+    initial: f64,
+    /// Largest speed, and largest kinetic energy, of the run so far.
+    peak_speed: f64,
+    peak_energy: f64,
+    /// Frames and ledger lines due next.
+    next_frame: f64,
+    next_line: f64,
+    saved: Instant,
+    joined: (Instant, f64),
+}
+
+impl<const D: usize, S> Run<'_, D, S>
+where
+    S: Scheme<D, f64, State = Flow<D, f64>>,
+    S::Ground: Bed<D, f64>,
+{
+    fn start<'a>(work: Work<'a>, mut simulation: Simulation<D, S>) -> Result<Run<'a, D, S>, RunError> {
+        simulation.maps = Some(Maps::new(simulation.layout()));
+        let plane = Plane::of(work.scene, &simulation.grid().origin, &simulation.grid().size, simulation.grid().cells.as_slice());
+        let directory = &work.options.directory;
+        let (frame_file, ledger_file) = (frames_in(directory), directory.join("mass.csv"));
+        let initial = simulation.totals().volume;
+        let (frames, ledger);
+        let mut restored = None;
+        if work.options.resume {
+            let saved = checkpoint_in(directory);
+            let checkpoint = Checkpoint::read(&saved, &case_hash(&work.case.text()))?;
+            restored = Some(checkpoint.time);
+            (frames, ledger) = {
+                let (mut frames, _torn) = Frames::open(&frame_file)?;
+                let mut ledger = Ledger::open(&ledger_file)?;
+                frames.truncate_to(checkpoint.time)?;
+                ledger.truncate_to(checkpoint.time)?;
+                (frames, ledger)
+            };
+            let problem = restore(&mut simulation, &checkpoint);
+            if let Some(problem) = problem {
+                return Err(RunError::Resume { directory: directory.clone(), problem });
+            }
+            let scalar = |name: &str| checkpoint.scalar(name).unwrap_or(0.0);
+            let mut run = Run::new(work, simulation, plane, frames, ledger, initial);
+            run.peak_speed = scalar("peak_speed");
+            run.peak_energy = scalar("peak_energy");
+            run.initial = scalar("initial");
+            run.next_frame = scalar("next_frame");
+            run.next_line = scalar("next_line");
+            return Ok(run);
+        }
+        debug_assert!(restored.is_none());
+        output::remove_leftovers(directory)?;
+        let precision = match work.case.precision() {
+            case::Precision::F32 => Precision::F32,
+            case::Precision::F64 => Precision::F64,
+        };
+        let length = simulation.grid().count();
+        let field = |name: &&str| frames::Field { name: (*name).to_owned(), length };
+        let fields = plane.series().iter().map(field).collect();
+        frames = Frames::create(&frame_file, precision, fields)?;
+        ledger = Ledger::create(&ledger_file)?;
+        let mut run = Run::new(work, simulation, plane, frames, ledger, initial);
+        run.peak_speed = run.simulation.speed();
+        run.peak_energy = run.simulation.energy();
+        run.frame()?;
+        run.schedule();
+        Ok(run)
+    }
+
+    fn new<'a>(
+        work: Work<'a>,
+        simulation: Simulation<D, S>,
+        plane: Plane,
+        frames: Frames,
+        ledger: Ledger,
+        initial: f64,
+    ) -> Run<'a, D, S> {
+        let now = Instant::now();
+        Run {
+            work,
+            simulation,
+            plane,
+            frames,
+            ledger,
+            initial,
+            peak_speed: 0.0,
+            peak_energy: 0.0,
+            next_frame: f64::INFINITY,
+            next_line: f64::INFINITY,
+            saved: now,
+            joined: (now, 0.0),
+        }
+    }
+
+    /// Time between frames, where it is set by time.
+    fn interval(&self) -> Option<f64> {
+        match self.work.case.frames() {
+            case::Frames::Every(interval) => Some(interval),
+            case::Frames::Steps(_) => None,
+            // Nobody knows when a run that ends by itself will end.
+            case::Frames::Ends if self.plane.is_terrain() => Some(10.0),
+            case::Frames::Ends => Some(1.0),
+        }
+    }
+
+    /// The frame and the ledger line after the present time.
+    fn schedule(&mut self) {
+        let time = self.simulation.time();
+        if let Some(interval) = self.interval() {
+            // Multiples of the interval, so that rounding does not add up.
+            let after = |interval: f64| {
+                let next = ((time / interval).floor() + 1.0) * interval;
+                if next - time > 1e-9 * interval { next } else { next + interval }
+            };
+            self.next_frame = after(interval);
+            self.next_line = after(interval / LINES);
+        }
+    }
+
+    fn go(mut self) -> Result<Finished, RunError> {
+        let time = self.work.case.time.clone();
+        let end = time.end.unwrap_or(f64::INFINITY);
+        let reason = loop {
+            if let Some(reason) = self.over(&time, end) {
+                break reason;
+            }
+            let until = self.next_frame.min(end);
+            if !self.simulation.wanted_step().is_finite() && !until.is_finite() {
+                break StopReason::AtRest;
+            }
+            let before = (self.simulation.step(), self.simulation.time());
+            if let Err(failure) = self.simulation.advance(until) {
+                return Err(self.failed(failure, before.1)?);
+            }
+            self.after_step()?;
+        };
+        if self.frames.times().last() != Some(&self.simulation.time()) {
+            self.frame()?;
+        }
+        self.checkpoint()?;
+        let finished = self.finish(reason)?;
+        finished.write_result(&self.work.options.command)?;
+        finished.summary.write(&finished.directory.join("summary.json"))?;
+        Ok(finished)
+    }
+
+    fn after_step(&mut self) -> Result<(), RunError> {
+        let (time, step) = (self.simulation.time(), self.simulation.step());
+        self.peak_speed = self.peak_speed.max(self.simulation.speed());
+        self.peak_energy = self.peak_energy.max(self.simulation.energy());
+        let (_, wet_cells) = self.simulation.counts();
+        (self.work.report)(&Status { time, step, wet_cells, max_speed: self.simulation.speed() });
+        let by_steps = match self.work.case.frames() {
+            case::Frames::Steps(every) => step % every == 0,
+            _ => false,
+        };
+        if by_steps || time >= self.next_frame {
+            self.frame()?;
+            self.schedule();
+            if self.joined.0.elapsed().as_secs_f64() > (JOIN * self.joined.1).max(CHECKPOINT) {
+                let begin = Instant::now();
+                self.finish(StopReason::Interrupted)?.write_result(&self.work.options.command)?;
+                self.joined = (Instant::now(), begin.elapsed().as_secs_f64());
+            }
+        } else if time >= self.next_line {
+            self.line()?;
+            let interval = self.interval().unwrap_or(f64::INFINITY) / LINES;
+            while self.next_line <= time {
+                self.next_line += interval;
+            }
+        }
+        if self.saved.elapsed().as_secs_f64() > CHECKPOINT {
+            self.checkpoint()?;
+        }
+        Ok(())
+    }
+
+    /// Why the run is over, if it is.
+    fn over(&self, time: &case::Time, end: f64) -> Option<StopReason> {
+        let simulation = &self.simulation;
+        if self.work.stop.load(Ordering::Relaxed) {
+            return Some(StopReason::Interrupted);
+        }
+        if time.until.is_some() {
+            if simulation.at_rest() {
+                return Some(StopReason::AtRest);
+            }
+            if let Some(limit) = time.rest_speed
+                && simulation.step() > 1
+                && simulation.speed() < limit
+            {
+                return Some(StopReason::BelowSpeed);
+            }
+        }
+        if let Some(stop) = &time.stop
+            && simulation.step() > 0
+            && self.peak_energy > 0.0
+            && simulation.energy() < stop.kinetic_energy * self.peak_energy
+        {
+            return Some(StopReason::KineticEnergy);
+        }
+        if simulation.time() >= end {
+            return Some(StopReason::EndTime);
+        }
+        (time.steps.is_some_and(|steps| simulation.step() >= steps)).then_some(StopReason::Steps)
+    }
+
+    /// Save what there is before the failed step is reported.
+    fn failed(&mut self, failure: Failure, time: f64) -> Result<RunError, RunError> {
+        // The state after the failed step is worth nothing; the frames and the last checkpoint are.
+        let finished = self.finish(StopReason::Interrupted)?;
+        finished.write_result(&self.work.options.command)?;
+        let time = self.frames.times().last().copied().unwrap_or(time);
+        Ok(RunError::Computation { failure, time, saved: finished.directory.join("result.nc") })
+    }
+
+    fn line(&mut self) -> Result<(), RunError> {
+        let totals = self.simulation.totals();
+        let out = self.simulation.out();
+        let gone: f64 = output::ledger::sum(out);
+        self.ledger.append(Entry {
+            time: self.simulation.time(),
+            step: self.simulation.step(),
+            mass: totals.volume,
+            mass_in: 0.0,
+            out,
+            mass_error: relative(totals.volume + gone - self.initial, self.initial),
+            wet_cells: totals.wet as u64,
+            moving_cells: totals.moving as u64,
+            max_speed: totals.speed,
+            kinetic_energy: totals.energy,
+        })?;
+        Ok(())
+    }
+
+    /// A frame of the series and its line in the ledger.
+    fn frame(&mut self) -> Result<(), RunError> {
+        let count = self.plane.series().len();
+        let mut series = vec![Vec::with_capacity(self.simulation.grid().count()); count];
+        for number in 0..self.simulation.grid().count() {
+            let index = self.simulation.grid().index(number);
+            let cell = self.simulation.cell(index);
+            let u = cell.state.velocity();
+            let thickness = cell.ground.thickness(cell.state.h);
+            series[0].push(thickness);
+            for k in 0..D {
+                series[1 + k].push(u[k]);
+            }
+            if let Some(bed) = self.plane.bed() {
+                let cos = cell.ground.thickness(1.0);
+                series[1 + D].push(bed[number] + cos * thickness);
+                series[2 + D].push(cell.ground.square(u).sqrt());
+            }
+        }
+        let slices: Vec<&[f64]> = series.iter().map(Vec::as_slice).collect();
+        self.frames.append(self.simulation.time(), &slices)?;
+        self.line()
+    }
+
+    fn checkpoint(&mut self) -> Result<(), RunError> {
+        let simulation = &self.simulation;
+        let mut scalars: Vec<(String, f64)> = vec![
+            ("peak_speed".into(), self.peak_speed),
+            ("peak_energy".into(), self.peak_energy),
+            ("initial".into(), self.initial),
+            ("next_frame".into(), self.next_frame),
+            ("next_line".into(), self.next_line),
+        ];
+        scalars.extend(simulation.clock().iter().enumerate().map(|(k, v)| (format!("clock_{k}"), *v)));
+        let state = simulation.arrays().parts.iter().enumerate();
+        let mut arrays: Vec<(String, Cow<[f64]>)> =
+            state.map(|(k, part)| (format!("state_{k}"), Cow::from(part))).collect();
+        if let Some(maps) = &simulation.maps {
+            arrays.extend(maps.named().map(|(name, map)| (name.to_owned(), Cow::from(map))));
+        }
+        let checkpoint = Checkpoint {
+            case: case_hash(&self.work.case.text()),
+            step: simulation.step(),
+            time: simulation.time(),
+            scalars,
+            arrays,
+        };
+        checkpoint.write(&checkpoint_in(&self.work.options.directory))?;
+        self.saved = Instant::now();
+        Ok(())
+    }
+
+    fn finish(&mut self, stop_reason: StopReason) -> Result<Finished, RunError> {
+        let margins = self.simulation.margins();
+        let simulation = &self.simulation;
+        let totals = simulation.totals();
+        let out = simulation.out();
+        let gone = output::ledger::sum(out);
+        let wall = self.work.clock.elapsed().as_secs_f64();
+        let case = self.work.case;
+        let maps = simulation.maps.as_ref();
+        let stopping_time = (stop_reason == StopReason::AtRest).then(|| simulation.time());
+        let mut summary = Summary {
+            title: case.title.clone(),
+            model: case.model.as_str().to_owned(),
+            scheme: case.scheme.name.as_str().to_owned(),
+            cells: simulation.grid().count() as u64,
+            steps: simulation.step(),
+            time: simulation.time(),
+            stop_reason,
+            stopping_time,
+            mass_initial: self.initial,
+            mass_final: totals.volume,
+            mass_in: 0.0,
+            mass_out: gone,
+            mass_error: relative(totals.volume + gone - self.initial, self.initial),
+            film_volume: totals.film,
+            max_speed_final: totals.speed,
+            max_speed: self.peak_speed,
+            runout: None,
+            reach_angle: None,
+            wall_seconds: wall,
+            cell_updates_per_second: simulation.updates() as f64 / wall,
+            threads: rayon::current_num_threads() as u64,
+            version: env!("CARGO_PKG_VERSION").to_owned(),
+            extra: serde_json::Map::new(),
+        };
+        for (name, value) in EXITS.iter().zip(out) {
+            summary.add(&format!("mass_out_{name}"), value);
+        }
+        summary.add("kinetic_energy_final", totals.energy);
+        summary.add("moving_cells_final", totals.moving as f64);
+        summary.add("film_share", relative(totals.film, totals.volume));
+        let unpad = |map: &[f64]| -> Vec<f64> {
+            let place = |number| simulation.place(simulation.grid().index(number));
+            (0..simulation.grid().count()).map(|number| map[place(number)]).collect()
+        };
+        let named = maps.into_iter().flat_map(Maps::named).map(|(name, map)| (name, unpad(map)));
+        let deposit = simulation.collect(|cell| cell.ground.thickness(cell.state.h));
+        let (frames, _) = Frames::open(self.frames.path())?;
+        Ok(Finished::new(
+            case,
+            self.work.options.directory.clone(),
+            self.plane.clone(),
+            frames,
+            self.ledger.entries().to_vec(),
+            named.collect(),
+            deposit,
+            margins,
+            summary,
+        ))
+    }
+}
+
+/// part/whole, and 0 of nothing.
+fn relative(part: f64, whole: f64) -> f64 {
+    if whole == 0.0 { 0.0 } else { part / whole }
+}
+
+fn frames_in(directory: &Path) -> PathBuf {
+    directory.join("checkpoint").join("frames.bin")
+}
+
+fn checkpoint_in(directory: &Path) -> PathBuf {
+    directory.join("checkpoint").join("state.bin")
+}
+
+/// Put a checkpoint back; what does not fit, if anything.
+fn restore<const D: usize, S>(simulation: &mut Simulation<D, S>, saved: &Checkpoint) -> Option<String>
+where
+    S: Scheme<D, f64, State = Flow<D, f64>>,
+{
+    let clock: Vec<f64> = (0..3 + 2 * EXITS.len()).map_while(|k| saved.scalar(&format!("clock_{k}"))).collect();
+    let part = |k: usize| saved.array(&format!("state_{k}")).map(<[f64]>::to_vec);
+    let parts: Vec<Vec<f64>> = (0..=D).map_while(part).collect();
+    if !simulation.restore(&clock, Field { parts }) {
+        return Some("its state has another shape".to_owned());
+    }
+    if let Some(maps) = &mut simulation.maps {
+        for (name, map) in maps.named_mut() {
+            match saved.array(name) {
+                Some(values) if values.len() == map.len() => map.copy_from_slice(values),
+                _ => return Some(format!("its map {name} is missing or has another shape")),
+            }
+        }
+    }
+    None
+}

@@ -1,0 +1,273 @@
+//! From a case file to a simulation: files read, geometry computed, the scheme chosen.
+
+use crate::case::{self, Case, CaseError, SchemeName, Stepping};
+use crate::grid::Grid;
+use crate::raster::{Crs, Raster, RasterError};
+use crate::release::{self, ReleaseError};
+use crate::savage_hutter::balanced::Balanced;
+use crate::savage_hutter::friction::{Cohesion, Coulomb, Friction, SamosAt, Voellmy};
+use crate::savage_hutter::ground::{self, Bed, Chute};
+use crate::savage_hutter::kinetic::{
+    Kinetic, VERFAHREN_1, VERFAHREN_2, VERFAHREN_3, VERFAHREN_4, VERFAHREN_5,
+};
+use crate::savage_hutter::Flow;
+use crate::scheme::{Boundary, Scheme};
+use crate::simulation::{Simulation, StepSize};
+use crate::terrain::{Curvature, Terrain};
+use crate::time::{EULER, SSP_RK2};
+
+/// Why a case could not be set up.
+#[derive(Debug, thiserror::Error)]
+pub enum SetupError {
+    /// The case itself is wrong.
+    #[error(transparent)]
+    Case(#[from] CaseError),
+    /// The terrain, or a raster of thicknesses, cannot be used.
+    #[error(transparent)]
+    Raster(#[from] RasterError),
+    /// A release cannot be used.
+    #[error(transparent)]
+    Release(#[from] ReleaseError),
+}
+
+/// What a case describes, with every file read.
+#[derive(Debug)]
+pub enum Scene {
+    /// A chute in the papers' scaling, in one or two dimensions.
+    Chute {
+        /// Cells along x and y (1 in one dimension).
+        cells: [usize; 2],
+        /// Ground of every cell, x fastest.
+        grounds: Vec<Chute<2, f64>>,
+        /// Thickness and velocity of every cell.
+        initial: case::InitialState,
+    },
+    /// A mountain, SI units.
+    Mountain {
+        /// Bed and its derivatives.
+        terrain: Box<Terrain>,
+        /// Ground of every cell, x fastest, the first row in the south.
+        grounds: Vec<ground::Terrain<2, f64>>,
+        /// Released volume per plan area H \[m\].
+        release: Vec<f64>,
+    },
+}
+
+/// Work on a simulation of whatever dimension and scheme.
+pub trait Visit {
+    /// What the work gives.
+    type Output;
+    /// Do it.
+    fn visit<const D: usize, S>(self, simulation: Simulation<D, S>) -> Self::Output
+    where
+        S: Scheme<D, f64, State = Flow<D, f64>>,
+        S::Ground: Bed<D, f64>;
+}
+
+impl Scene {
+    /// Read what the case names and compute what does not change in time.
+    ///
+    /// # Errors
+    /// [`SetupError`] at the first file or key that cannot be used.
+    pub fn load(case: &Case) -> Result<Scene, SetupError> {
+        case.check()?;
+        match (&case.grid, &case.terrain) {
+            (Some(grid), _) => Ok(Self::chute(case, grid)?),
+            (None, Some(terrain)) => Self::mountain(case, terrain),
+            (None, None) => Err(case.fault("grid", "neither a grid nor a terrain", "add [grid] or [terrain]").into()),
+        }
+    }
+
+    fn chute(case: &Case, grid: &case::Grid) -> Result<Scene, CaseError> {
+        let (chute, material) = (case.chute()?, &case.material);
+        let cells = grid.cells();
+        let column = |i: usize| {
+            let zeta = chute.zeta(grid.x.centre(i));
+            Chute {
+                tilt: [zeta.sin(), 0.0],
+                beta: material.epsilon() * material.pressure_coefficient() * zeta.cos(),
+                cos: zeta.cos(),
+                curvature: material.eta() * chute.kappa(grid.x.face(i), grid.x.face(i + 1)),
+            }
+        };
+        let row: Vec<_> = (0..cells[0]).map(column).collect();
+        let grounds = (0..cells[1]).flat_map(|_| row.iter().copied()).collect();
+        Ok(Scene::Chute { cells, grounds, initial: case.initial_state()? })
+    }
+
+    fn mountain(case: &Case, terrain: &case::Terrain) -> Result<Scene, SetupError> {
+        let crs = match &terrain.crs {
+            Some(text) => Some(Crs::parse(text).map_err(|error| {
+                case.fault("terrain.crs", error.to_string(), "write it as crs = \"EPSG:31287\"")
+            })?),
+            None => None,
+        };
+        let mut bed = Raster::read_in(&case.resolve(&terrain.dem), crs.as_ref())?;
+        if let Some(cell) = terrain.cell {
+            bed = bed.resample(cell);
+        }
+        let curvature = terrain.curvature.length().map_or(Curvature::Off, Curvature::Length);
+        let terrain = Terrain::new(bed, curvature);
+        let mut release = vec![0.0; terrain.bed.values.len()];
+        for (number, one) in case.release.iter().enumerate() {
+            let volume = Self::release(case, one, number, &terrain)?;
+            for (sum, part) in release.iter_mut().zip(volume) {
+                *sum += part;
+            }
+        }
+        let grounds = ground::Terrain::cells(&terrain, case.gravity());
+        Ok(Scene::Mountain { terrain: Box::new(terrain), grounds, release })
+    }
+
+    /// Volume per plan area that one release gives to every cell.
+    fn release(
+        case: &Case,
+        one: &case::Release,
+        number: usize,
+        terrain: &Terrain,
+    ) -> Result<Vec<f64>, SetupError> {
+        let thickness = match &one.thickness {
+            Some(case::Thickness::Constant(value)) => Some(release::Thickness::Value(*value)),
+            Some(case::Thickness::Attribute(name)) => {
+                Some(release::Thickness::Attribute(name.attribute.clone()))
+            }
+            None => None,
+        };
+        let missing = || {
+            case.fault(
+                &format!("release.{number}"),
+                "the release says neither where nor how thick",
+                "give polygons with a thickness, a raster, or a cap",
+            )
+        };
+        let cells = match (&one.polygons, &one.raster, &one.cap) {
+            (Some(path), None, None) => {
+                release::polygons(&case.resolve(path), &thickness.ok_or_else(missing)?, &terrain.bed)?
+            }
+            (None, Some(path), None) => release::raster(&case.resolve(path), &terrain.bed)?,
+            (None, None, Some(cap)) => release::cap(cap.height, cap.centre, cap.radius, &terrain.bed)?,
+            _ => return Err(missing().into()),
+        };
+        let measured = match one.measured {
+            case::Measured::Normal => release::Measured::Normal,
+            case::Measured::Vertical => release::Measured::Vertical,
+        };
+        Ok(release::per_plan_area(&cells, terrain, measured))
+    }
+
+    /// Build the simulation that the case asks for and hand it to `work`.
+    pub fn simulate<V: Visit>(&self, case: &Case, work: V) -> V::Output {
+        let material = &case.material;
+        let density = material.density();
+        let mu = material.friction.mu();
+        match &material.friction {
+            case::Friction::Coulomb(_) => self.with_friction(case, Coulomb { mu }, work),
+            case::Friction::Voellmy(law) => {
+                self.with_friction(case, Voellmy { mu, xi: law.xi, gravity: case.gravity() }, work)
+            }
+            case::Friction::Cohesion(law) => {
+                self.with_friction(case, Cohesion { mu, bond: law.tau0 / density }, work)
+            }
+            case::Friction::Samosat(law) => {
+                let case::Samosat { mu, tau0, rs0, kappa, r, b } = *law;
+                self.with_friction(case, SamosAt { mu, bond: tau0 / density, rs0, kappa, r, b }, work)
+            }
+        }
+    }
+
+    fn with_friction<V: Visit, F: Friction>(&self, case: &Case, friction: F, work: V) -> V::Output {
+        let film = case.scheme.film();
+        let second = case.scheme.name == SchemeName::Balanced2;
+        match self {
+            Scene::Mountain { terrain, grounds, release } => {
+                let bed = &terrain.bed;
+                let grid = Grid {
+                    cells: [bed.columns, bed.rows],
+                    origin: [bed.west, bed.south],
+                    size: [bed.cell; 2],
+                    boundary: [[Boundary::Nothing; 2]; 2],
+                };
+                let number = |[i, j]: [usize; 2]| j * bed.columns + i;
+                work.visit(Simulation::new(
+                    if second { Balanced::second(friction, film) } else { Balanced::first(friction, film) },
+                    grid,
+                    if second { SSP_RK2 } else { EULER },
+                    step_size(case),
+                    |index| grounds[number(index)],
+                    |index| Flow::still(release[number(index)]),
+                ))
+            }
+            Scene::Chute { cells, .. } if cells[1] == 1 => self.on_chute::<1, V, F>(case, friction, work),
+            Scene::Chute { .. } => self.on_chute::<2, V, F>(case, friction, work),
+        }
+    }
+
+    fn on_chute<const D: usize, V: Visit, F: Friction>(&self, case: &Case, friction: F, work: V) -> V::Output {
+        let (Scene::Chute { cells, grounds, initial }, Some(description)) = (self, &case.grid) else {
+            unreachable!("a chute comes from a case with a grid")
+        };
+        let axes = [Some(&description.x), description.y.as_ref()];
+        let sides = description.sides();
+        let grid = Grid::<D> {
+            cells: std::array::from_fn(|k| cells[k]),
+            origin: std::array::from_fn(|k| axes[k].map_or(0.0, |axis| axis.from)),
+            size: std::array::from_fn(|k| axes[k].map_or(1.0, case::Axis::width)),
+            boundary: std::array::from_fn(|k| {
+                sides[k].map(|side| match side {
+                    case::Side::Open => Boundary::Open,
+                    case::Side::Wall => Boundary::Wall,
+                    case::Side::Periodic => Boundary::Periodic,
+                })
+            }),
+        };
+        let number = |index: [usize; D]| if D > 1 { index[D - 1] * cells[0] + index[0] } else { index[0] };
+        let ground = |index: [usize; D]| {
+            let Chute { tilt, beta, cos, curvature } = grounds[number(index)];
+            Chute { tilt: std::array::from_fn(|k| tilt[k]), beta, cos, curvature }
+        };
+        let state = |index: [usize; D]| {
+            let n = number(index);
+            let u = [initial.velocity_x[n], initial.velocity_y[n]];
+            let h = initial.thickness[n];
+            Flow { h, q: std::array::from_fn(|k| h * u[k]) }
+        };
+        let step = step_size(case);
+        let film = case.scheme.film();
+        let kinetic = |published: Kinetic| Kinetic { friction: Coulomb { mu: case.material.friction.mu() }, ..published };
+        let published = match case.scheme.name {
+            SchemeName::Balanced => {
+                return work.visit(Simulation::new(
+                    Balanced::first(friction, film),
+                    grid,
+                    EULER,
+                    step,
+                    ground,
+                    state,
+                ));
+            }
+            SchemeName::Balanced2 => {
+                return work.visit(Simulation::new(
+                    Balanced::second(friction, film),
+                    grid,
+                    SSP_RK2,
+                    step,
+                    ground,
+                    state,
+                ));
+            }
+            SchemeName::Verfahren1 => VERFAHREN_1,
+            SchemeName::Verfahren2 => VERFAHREN_2,
+            SchemeName::Verfahren3 => VERFAHREN_3,
+            SchemeName::Verfahren4 => VERFAHREN_4,
+            SchemeName::Verfahren5 => VERFAHREN_5,
+        };
+        work.visit(Simulation::new(kinetic(published), grid, EULER, step, ground, state))
+    }
+}
+
+fn step_size(case: &Case) -> StepSize {
+    match case.scheme.stepping() {
+        Stepping::Fixed(dt) => StepSize::Fixed(dt),
+        Stepping::Courant(courant) => StepSize::Courant(courant),
+    }
+}
