@@ -21,15 +21,19 @@
 
 mod axes;
 mod canvas;
+mod colour_bar;
 mod colours;
+mod contours;
 mod convergence;
 mod curves;
+mod depth;
 mod heat;
 mod history;
 mod lattice;
 mod legend;
 mod map;
 mod relief;
+mod scale_bar;
 mod section;
 mod surface;
 mod ticks;

@@ -1,7 +1,7 @@
 //! Axes: ranges, the frame of a panel with its marks and captions, headings, the colour bar.
 
 use super::canvas::{Area, Canvas, Lettering, Pen, SCALE};
-use super::colours::{Colours, GREY, INK, PALE};
+use super::colours::{GREY, INK, PALE};
 use super::ticks::{self, Ticks};
 use super::typeface;
 
@@ -11,8 +11,8 @@ pub(super) const CAPTION_SIZE: f64 = 13.0;
 const TITLE_SIZE: f64 = 15.5;
 /// Blank rim of every figure, points.
 pub(super) const RIM: f64 = 14.0;
-const TICK_LENGTH: f64 = 4.0;
-const GAP: f64 = 5.0;
+pub(super) const TICK_LENGTH: f64 = 4.0;
+pub(super) const GAP: f64 = 5.0;
 
 /// What an axis shows.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
@@ -38,8 +38,8 @@ impl<'a> Axis<'a> {
         Self { range: Some([low, high]), ..self }
     }
 
-    pub(super) fn caption(&self) -> String {
-        captioned(self.label, self.unit)
+    pub(super) fn caption(&self) -> Caption {
+        Caption::new(self.label, self.unit)
     }
 
     /// The given range, else that of `found` widened by `margin` of itself.
@@ -51,8 +51,36 @@ impl<'a> Axis<'a> {
     }
 }
 
-pub(super) fn captioned(label: &str, unit: &str) -> String {
-    if unit.is_empty() { label.into() } else { format!("{label} ({unit})") }
+/// What stands beside an axis: the quantity, and its unit in parentheses.
+#[derive(Debug, Clone, Default)]
+pub(super) struct Caption {
+    label: String,
+    unit: String,
+}
+
+impl Caption {
+    pub fn new(label: &str, unit: &str) -> Self {
+        Self { label: label.into(), unit: unit.into() }
+    }
+
+    pub fn is_empty(&self) -> bool {
+        self.label.is_empty() && self.unit.is_empty()
+    }
+
+    /// The text, with the power of ten that the labels leave out counted to the unit: `energy (10⁹ J)`.
+    pub fn text(&self, exponent: i32) -> String {
+        let power = if exponent == 0 { String::new() } else { format!("10{}", ticks::superscript(exponent)) };
+        let unit = [power.as_str(), &self.unit]
+            .into_iter()
+            .filter(|part| !part.is_empty())
+            .collect::<Vec<_>>()
+            .join(" ");
+        if unit.is_empty() {
+            self.label.clone()
+        } else {
+            format!("{} ({unit})", self.label).trim_start().into()
+        }
+    }
 }
 
 /// The least and greatest finite value.
@@ -74,6 +102,12 @@ pub(super) fn widened([low, high]: [f64; 2], margin: f64) -> [f64; 2] {
         return [low - half, high + half];
     }
     [low - margin * span, high + margin * span]
+}
+
+/// A range whose ends are moved outwards, by at most a hundredth, to rounder numbers: cell centres to the walls beside them.
+pub(super) fn rounded([low, high]: [f64; 2]) -> [f64; 2] {
+    let grain = if low < high { ticks::round_length(0.01 * (high - low)) } else { return [low, high] };
+    [(low / grain + 1e-6).floor() * grain, (high / grain - 1e-6).ceil() * grain]
 }
 
 /// How values become a place between 0 and 1.
@@ -107,7 +141,7 @@ impl Scale {
 
     /// Marks beside a vertical axis of this many points.
     pub fn upright_ticks(&self, length: f64) -> Ticks {
-        self.ticks((length / 38.0).clamp(2.0, 11.0) as usize)
+        self.ticks((length / 32.0).clamp(2.0, 11.0) as usize)
     }
 
     /// Marks under a horizontal axis, as many as their labels leave room for.
@@ -122,18 +156,19 @@ impl Scale {
     }
 }
 
-fn widest(ticks: &Ticks) -> f64 {
+/// Width of the widest label.
+pub(super) fn widest(ticks: &Ticks) -> f64 {
     ticks.labels.iter().map(|label| typeface::width(label, TICK_SIZE)).fold(0.0, f64::max)
 }
 
 /// Room that marks and caption take left of a panel.
-pub(super) fn left_room(ticks: &Ticks, caption: &str) -> f64 {
+pub(super) fn left_room(ticks: &Ticks, caption: &Caption) -> f64 {
     let caption = if caption.is_empty() { 0.0 } else { CAPTION_SIZE + 2.0 * GAP };
     TICK_LENGTH + GAP + widest(ticks) + caption
 }
 
 /// Room that marks and caption take below a panel.
-pub(super) fn bottom_room(caption: &str) -> f64 {
+pub(super) fn bottom_room(caption: &Caption) -> f64 {
     let caption = if caption.is_empty() { 0.0 } else { CAPTION_SIZE + 1.4 * GAP };
     TICK_LENGTH + GAP + TICK_SIZE + caption
 }
@@ -145,13 +180,15 @@ pub(super) struct Panel {
     pub y: Scale,
     x_ticks: Ticks,
     y_ticks: Ticks,
-    x_caption: String,
-    y_caption: String,
+    x_caption: Caption,
+    y_caption: Caption,
+    /// Where the foot of the upright caption stands; beside the labels where `None`.
+    caption_x: Option<f64>,
 }
 
 impl Panel {
     /// The panel that fills `outer` together with its marks and captions; an axis without caption still has its marks.
-    pub fn fit(outer: Area, x: Scale, y: Scale, x_caption: String, y_caption: String) -> Self {
+    pub fn fit(outer: Area, x: Scale, y: Scale, x_caption: Caption, y_caption: Caption) -> Self {
         let height = outer.height - bottom_room(&x_caption);
         let left = left_room(&y.upright_ticks(height), &y_caption);
         let right = 10.0; // half of the last label
@@ -161,7 +198,7 @@ impl Panel {
     }
 
     /// The panel whose frame is `area`.
-    pub fn within(area: Area, x: Scale, y: Scale, x_caption: String, y_caption: String) -> Self {
+    pub fn within(area: Area, x: Scale, y: Scale, x_caption: Caption, y_caption: Caption) -> Self {
         let round = |v: f64| (v * SCALE).round() / SCALE;
         let area = Area {
             left: round(area.left),
@@ -170,13 +207,19 @@ impl Panel {
             height: round(area.height.max(10.0)),
         };
         let (x_ticks, y_ticks) = (x.level_ticks(area.width), y.upright_ticks(area.height));
-        Self { area, x, y, x_ticks, y_ticks, x_caption, y_caption }
+        Self { area, x, y, x_ticks, y_ticks, x_caption, y_caption, caption_x: None }
     }
 
     /// Leaves out the labels below: another panel beneath shares the axis.
     pub fn without_x_labels(mut self) -> Self {
         self.x_ticks.labels.clear();
         self.x_ticks.exponent = 0;
+        self
+    }
+
+    /// Puts the upright caption at `x`, in one column with those of other panels.
+    pub fn with_caption_at(mut self, x: f64) -> Self {
+        self.caption_x = Some(x);
         self
     }
 
@@ -234,28 +277,19 @@ impl Panel {
             let y = self.place(self.x.range[0], v)[1];
             canvas.line(&[[left - 0.5 * TICK_LENGTH, y], [left, y]], pen);
         }
-        let x_caption = with_power(&self.x_caption, self.x_ticks.exponent);
-        let y_caption = with_power(&self.y_caption, self.y_ticks.exponent);
+        let x_caption = self.x_caption.text(self.x_ticks.exponent);
+        let y_caption = self.y_caption.text(self.y_ticks.exponent);
         let middle = left + 0.5 * self.area.width;
         let below = label_y + TICK_SIZE * typeface::CAPITAL + 1.6 * GAP;
         canvas.text(&x_caption, [middle, below], Lettering::new(CAPTION_SIZE, [0.5, 1.0]));
         let beside = left - TICK_LENGTH - GAP - widest(&self.y_ticks) - 1.6 * GAP;
-        let place = [beside, self.area.top + 0.5 * self.area.height];
-        upright_text(canvas, &y_caption, place, self.area.height + 30.0);
+        let place = [self.caption_x.unwrap_or(beside), self.area.top + 0.5 * self.area.height];
+        upright_text(canvas, &y_caption, place, self.area.height);
     }
-}
-
-/// A caption with the power of ten that its labels leave out: the quantity is the label times that power.
-fn with_power(caption: &str, exponent: i32) -> String {
-    if exponent == 0 {
-        return caption.into();
-    }
-    let space = if caption.is_empty() { "" } else { "  " };
-    format!("{caption}{space}×10{}", ticks::superscript(exponent))
 }
 
 /// A caption along a vertical axis, its foot at `place`, set smaller where `room` is short.
-fn upright_text(canvas: &mut Canvas, text: &str, place: [f64; 2], room: f64) {
+pub(super) fn upright_text(canvas: &mut Canvas, text: &str, place: [f64; 2], room: f64) {
     let size = CAPTION_SIZE.min(CAPTION_SIZE * room / typeface::width(text, CAPTION_SIZE).max(1.0));
     canvas.text(text, place, Lettering { angle: 90.0, ..Lettering::new(size, [0.5, 0.0]) });
 }
@@ -280,46 +314,6 @@ pub(super) fn heading_height(title: &str, subtitle: &str) -> f64 {
     RIM + lines + if lines > 0.0 { 2.0 } else { 0.0 }
 }
 
-/// A vertical scale of colours.
-pub(super) struct ColourBar {
-    pub colours: Colours,
-    pub range: [f64; 2],
-    pub caption: String,
-}
-
-const BAR_WIDTH: f64 = 15.0;
-
-impl ColourBar {
-    /// Width of the bar with its labels, `height` points high.
-    pub fn room(&self, height: f64) -> f64 {
-        let ticks = Scale::new(self.range).upright_ticks(height);
-        BAR_WIDTH + TICK_LENGTH + GAP + widest(&ticks) + CAPTION_SIZE + 2.4 * GAP
-    }
-
-    pub fn draw(&self, canvas: &mut Canvas, left: f64, top: f64, height: f64) {
-        let area = Area { left, top, width: BAR_WIDTH, height };
-        let rows = area.pixels().1;
-        for row in 0..rows {
-            let colour = self.colours.at(1.0 - (row as f64 + 0.5) / rows as f64);
-            canvas.block(Area { top: top + row as f64 / SCALE, height: 1.0 / SCALE, ..area }, colour);
-        }
-        let pen = Pen::new(INK, 1.0);
-        canvas.ring(&area.corners(), pen);
-        let scale = Scale::new(self.range);
-        let ticks = scale.upright_ticks(height);
-        for (&v, label) in ticks.at.iter().zip(&ticks.labels) {
-            let y = area.bottom() - height * scale.place(v);
-            canvas.line(&[[area.right(), y], [area.right() + TICK_LENGTH, y]], pen);
-            let place = [area.right() + TICK_LENGTH + GAP, y];
-            canvas.text(label, place, Lettering::new(TICK_SIZE, [0.0, 0.5]));
-        }
-        let caption = with_power(&self.caption, ticks.exponent);
-        let beside =
-            area.right() + TICK_LENGTH + 2.4 * GAP + widest(&ticks) + CAPTION_SIZE * typeface::CAPITAL;
-        upright_text(canvas, &caption, [beside, top + 0.5 * height], height + 30.0);
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -332,6 +326,11 @@ mod tests {
         assert_eq!(widened([0.0, 10.0], 0.1), [-1.0, 11.0]);
         assert_eq!(extent([f64::NAN, 3.0, f64::INFINITY, -1.0]), Some([-1.0, 3.0]));
         assert_eq!(extent([f64::NAN]), None);
+        assert_eq!(rounded([-5.985, 5.985]), [-6.0, 6.0]);
+        assert_eq!(rounded([0.0, 10.0]), [0.0, 10.0]);
+        assert_eq!(Caption::new("energy", "J").text(9), "energy (10⁹ J)");
+        assert_eq!(Caption::new("x", "").text(0), "x");
+        assert_eq!(Caption::new("h", "").text(-3), "h (10⁻³)");
     }
 
     #[test]

@@ -208,7 +208,9 @@ impl Canvas {
     }
 
     pub fn finish(self) -> Picture {
-        let rgb = self.pixels.data().as_chunks().0.iter().flat_map(|&[r, g, b, _]| [r, g, b]).collect();
+        let rgba = self.pixels.data().as_chunks::<4>().0;
+        let mut rgb = vec![0; 3 * rgba.len()];
+        rgb.as_chunks_mut::<3>().0.iter_mut().zip(rgba).for_each(|(out, &[r, g, b, _])| *out = [r, g, b]);
         Picture { width: self.pixels.width(), height: self.pixels.height(), rgb }
     }
 }

@@ -8,10 +8,13 @@ pub(super) const GREY: Rgb = [110, 110, 110];
 pub(super) const PALE: Rgb = [228, 228, 228];
 pub(super) const WHITE: Rgb = [255, 255, 255];
 
+/// How many line colours there are.
+pub(super) const LINE_COLOURS: usize = 7;
+
 /// The `index`-th line colour, in turn: Okabe and Ito's set, told apart by every kind of eye (the yellow is left out).
 #[must_use]
 pub fn line_colour(index: usize) -> Rgb {
-    const LINES: [Rgb; 7] = [
+    const LINES: [Rgb; LINE_COLOURS] = [
         [0, 114, 178],
         [213, 94, 0],
         [0, 158, 115],

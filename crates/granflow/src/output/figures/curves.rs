@@ -1,8 +1,8 @@
 //! Curves over one axis: profiles, exact against computed, with filled ground and pile.
 
-use super::axes::{Axis, Panel, RIM, Scale, extent, heading};
+use super::axes::{Axis, Panel, RIM, Scale, extent, heading, rounded};
 use super::canvas::{Area, Canvas, Pen};
-use super::colours::{Rgb, line_colour};
+use super::colours::{LINE_COLOURS, Rgb, line_colour};
 use super::legend::{Key, Legend, along};
 use super::{Figure, FigureError, Picture};
 
@@ -50,6 +50,7 @@ impl Curve<'_> {
         let pen = Pen::new(self.colour(turn), 1.9);
         let dashes: &'static [f32] = match self.style {
             Style::Points => return Key::Points(self.colour(turn)),
+            Style::Solid if self.colour.is_none() && turn >= LINE_COLOURS => &[12.0, 2.5], // colours come round again
             Style::Solid => &[],
             Style::Dashed => &[7.0, 4.0],
             Style::Dotted => &[2.0, 3.0],
@@ -142,7 +143,7 @@ impl Figure for Profiles<'_> {
         let bands =
             self.fills.iter().flat_map(|f| f.upper.iter().chain(f.lower.into_iter().flatten()).copied());
         let ys = all(|c| c.y.to_vec()).chain(bands);
-        let x = Scale::new(self.x.range_of(extent(xs), 0.0).ok_or_else(|| none("x"))?);
+        let x = Scale::new(self.x.range_of(extent(xs).map(rounded), 0.0).ok_or_else(|| none("x"))?);
         let y = Scale::new(self.y.range_of(extent(ys), 0.05).ok_or_else(|| none("y"))?);
 
         let (width, height) = (800.0, 500.0);

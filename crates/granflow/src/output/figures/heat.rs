@@ -1,10 +1,11 @@
 //! A field seen from above: over a plane, or over space and time (the "Draufsicht" of the papers).
 
 use super::axes::{
-    Axis, ColourBar, Panel, RIM, Scale, bottom_room, extent, heading, heading_height, left_room, widened,
+    Axis, Panel, RIM, Scale, bottom_room, extent, heading, heading_height, left_room, widened,
 };
 use super::canvas::{Area, Canvas, Pen};
-use super::colours::{Colours, INK, Rgb, pick};
+use super::colour_bar::ColourBar;
+use super::colours::{Colours, INK, Rgb, WHITE, pick};
 use super::lattice::{Between, Lattice, paint};
 use super::{Figure, FigureError, Picture};
 
@@ -41,7 +42,10 @@ impl Outline<'_> {
 
     pub(super) fn draw(&self, canvas: &mut Canvas, panel: &Panel) {
         let line: Vec<_> = self.points.iter().map(|&[x, y]| panel.place(x, y)).collect();
-        if self.closed { canvas.ring(&line, self.pen()) } else { canvas.line(&line, self.pen()) }
+        let casing = Pen { alpha: 0.7, ..Pen::new(WHITE, 3.6) };
+        for pen in [casing, self.pen()] {
+            if self.closed { canvas.ring(&line, pen) } else { canvas.line(&line, pen) }
+        }
     }
 }
 

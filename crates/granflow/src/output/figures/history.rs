@@ -1,6 +1,9 @@
 //! What became of mass, energy and speed: panels one above the other that share the time.
 
-use super::axes::{Axis, Panel, RIM, Scale, bottom_room, extent, heading, left_room};
+use super::axes::{
+    Axis, CAPTION_SIZE, Caption, Panel, RIM, Scale, bottom_room, extent, heading, heading_height, left_room,
+    rounded,
+};
 use super::canvas::{Area, Canvas};
 use super::curves::{Curve, draw_all, legend, taken};
 use super::{Figure, FigureError, Picture};
@@ -32,7 +35,7 @@ impl Figure for History<'_> {
         let curves = || self.panels.iter().flat_map(|panel| panel.curves);
         curves().try_for_each(|curve| curve.check(self.title))?;
         let instants = extent(curves().flat_map(|curve| curve.x.iter().copied()));
-        let range = self.time.range_of(instants, 0.0);
+        let range = self.time.range_of(instants.map(rounded), 0.0);
         let time = Scale::new(range.ok_or_else(|| FigureError::empty(self.title, "no finite instant"))?);
         let mut scales = Vec::new();
         for panel in self.panels {
@@ -44,10 +47,12 @@ impl Figure for History<'_> {
         let (each, gap, width) = (if scales.len() > 2 { 130.0 } else { 190.0 }, 14.0, 800.0);
         let caption = self.time.caption();
         let high = scales.len() as f64 * (each + gap) - gap;
-        let head = super::axes::heading_height(self.title, self.subtitle);
+        let head = heading_height(self.title, self.subtitle);
         let mut canvas = Canvas::new(width, head + high + bottom_room(&caption) + RIM);
         heading(&mut canvas, self.title, self.subtitle, width);
-        let left = scales.iter().map(|y| left_room(&y.upright_ticks(each), "y")).fold(0.0, f64::max) + RIM;
+        let part_caption = Caption::new("y", "");
+        let left =
+            scales.iter().map(|y| left_room(&y.upright_ticks(each), &part_caption)).fold(0.0, f64::max) + RIM;
         for (k, (part, &y)) in self.panels.iter().zip(&scales).enumerate() {
             let area = Area {
                 left,
@@ -56,8 +61,9 @@ impl Figure for History<'_> {
                 height: each,
             };
             let last = k + 1 == scales.len();
-            let below = if last { caption.clone() } else { String::new() };
-            let mut panel = Panel::within(area, time, y, below, part.y.caption());
+            let below = if last { caption.clone() } else { Caption::default() };
+            let mut panel =
+                Panel::within(area, time, y, below, part.y.caption()).with_caption_at(RIM + CAPTION_SIZE);
             if !last {
                 panel = panel.without_x_labels();
             }

@@ -65,7 +65,7 @@ impl Legend {
         if self.is_empty() {
             return;
         }
-        canvas.fill(&area.corners(), WHITE, 0.88);
+        canvas.fill(&area.corners(), WHITE, 0.95);
         canvas.ring(&area.corners(), Pen::new(PALE, 1.0));
         for (k, (name, key)) in self.entries.iter().enumerate() {
             let (left, y) = (area.left + PAD, area.top + 0.5 * PAD + (k as f64 + 0.5) * ROW);

@@ -3,15 +3,17 @@
 use rayon::prelude::*;
 
 use super::axes::{
-    Axis, ColourBar, Panel, RIM, Scale, bottom_room, extent, heading, heading_height, left_room,
+    Axis, Caption, Panel, RIM, Scale, bottom_room, extent, heading, heading_height, left_room,
 };
-use super::canvas::{Area, Canvas, Lettering, Pen};
-use super::colours::{Colours, INK, WHITE, mix, pick, shade};
+use super::canvas::{Area, Canvas};
+use super::colour_bar::ColourBar;
+use super::colours::{Colours, mix, pick, shade};
+use super::contours::{Contours, Elevations};
 use super::heat::Outline;
 use super::lattice::{Between, Lattice, paint};
 use super::legend::{Key, Legend, along};
-use super::relief::{Contours, ground, hillshade};
-use super::ticks::{number, round_length};
+use super::relief::{ground, hillshade};
+use super::scale_bar::ScaleBar;
 use super::{Figure, FigureError, Picture};
 
 /// Where a raster lies: row 0 is the southernmost, values belong to whole cells.
@@ -164,13 +166,14 @@ impl Figure for Map<'_> {
             overlay.map(|(o, range)| ColourBar { colours: o.colours, range, caption: o.quantity.caption() });
         let room = bar.as_ref().map_or(10.0, |bar| 16.0 + bar.room(high));
         let head = heading_height(self.title, self.subtitle);
-        let left = RIM + left_room(&y.upright_ticks(high), "y");
-        let (width, height) = (left + wide + room + RIM, head + high + bottom_room("x") + RIM);
+        let (easting, northing) = (Caption::new("easting", "m"), Caption::new("northing", "m"));
+        let left = RIM + left_room(&y.upright_ticks(high), &northing);
+        let (width, height) = (left + wide + room + RIM, head + high + bottom_room(&easting) + RIM);
 
         let mut canvas = Canvas::new(width, height);
         heading(&mut canvas, self.title, self.subtitle, width);
         let area = Area { left, top: head, width: wide, height: high };
-        let panel = Panel::within(area, x, y, "easting (m)".into(), "northing (m)".into());
+        let panel = Panel::within(area, x, y, easting, northing);
 
         let (columns, rows) = panel.area.pixels();
         let at = |k: usize, n: usize, [low, high]: [f64; 2]| low + (high - low) * (k as f64 + 0.5) / n as f64;
@@ -187,7 +190,7 @@ impl Figure for Map<'_> {
         elevation.par_chunks_mut(columns).zip(&up).for_each(|(line, &up)| {
             line.iter_mut().zip(&across).for_each(|(z, &across)| *z = lattice(self.bed).at(across, up));
         });
-        let relief = Relief { elevation: &elevation, columns, rows };
+        let relief = Elevations { elevation: &elevation, columns, rows };
         let shown = extent(elevation.iter().copied());
         let contours = shown.filter(|_| self.contours).and_then(|[low, high]| Contours::over(high - low));
         let table = overlay.map(|(o, _)| o.colours.table());
@@ -207,7 +210,8 @@ impl Figure for Map<'_> {
             if let (Some((o, range)), Some(table)) = (overlay, &table) {
                 let value = field(column, row);
                 if value > o.threshold {
-                    colour = mix(colour, shade(pick(table, value, range), 0.70 + 0.36 * light), 0.88);
+                    colour =
+                        mix(colour, shade(pick(table, value, range), (0.80 + 0.34 * light).min(1.06)), 0.88);
                 }
             }
             Some(match contours {
@@ -222,12 +226,7 @@ impl Figure for Map<'_> {
         canvas.clip(Some(panel.area));
         let covered =
             |column: usize, row: usize| overlay.is_some_and(|(o, _)| field(column, row) > o.threshold);
-        if let Some(contours) = contours {
-            relief.label(&mut canvas, &panel, contours, covered);
-        }
-        self.outlines.iter().for_each(|outline| outline.draw(&mut canvas, &panel));
-
-        let mut taken = Vec::new();
+        let (mut taken, mut lines) = (Vec::new(), Vec::new());
         for row in (0..rows).step_by(12) {
             let inside = (0..columns).step_by(12).filter(|&column| covered(column, row));
             taken.extend(inside.map(|column| panel.area.at_pixel(column, row)));
@@ -235,12 +234,24 @@ impl Figure for Map<'_> {
         let mut legend = Legend::default();
         for outline in self.outlines {
             let line: Vec<_> = outline.points.iter().map(|&[x, y]| panel.place(x, y)).collect();
-            along(&line, panel.area, &mut taken);
+            along(&line, panel.area, &mut lines);
             legend.add(outline.name, Key::Line(outline.pen()));
         }
-        let ruler = scale_bar(&mut canvas, &panel, &taken);
-        along(&ruler.corners(), panel.area, &mut taken);
+        taken.extend(&lines);
+        let ruler = ScaleBar::fit(&panel, &taken);
+        along(&ruler.area.corners(), panel.area, &mut taken);
         let (place, _) = legend.best_place(panel.area, &taken);
+        let boxes = if legend.is_empty() { vec![ruler.area] } else { vec![ruler.area, place] };
+        if let Some(contours) = contours {
+            let free = |column: usize, row: usize| {
+                let p = panel.area.at_pixel(column, row);
+                let beside = |q: &[f64; 2]| (p[0] - q[0]).hypot(p[1] - q[1]) < 12.0;
+                !covered(column, row) && !boxes.iter().any(|b| b.contains(p)) && !lines.iter().any(beside)
+            };
+            relief.label(&mut canvas, &panel, contours, free);
+        }
+        self.outlines.iter().for_each(|outline| outline.draw(&mut canvas, &panel));
+        ruler.draw(&mut canvas);
         legend.draw(&mut canvas, place);
         canvas.clip(None);
         panel.draw_frame(&mut canvas);
@@ -248,100 +259,6 @@ impl Figure for Map<'_> {
             bar.draw(&mut canvas, panel.area.right() + 16.0, panel.area.top, panel.area.height);
         }
         Ok(canvas.finish())
-    }
-}
-
-/// A round length on the map, in the lower corner that hides less of `taken`; returns the place it took.
-fn scale_bar(canvas: &mut Canvas, panel: &Panel, taken: &[[f64; 2]]) -> Area {
-    let across = panel.x.range[1] - panel.x.range[0];
-    let length = round_length(0.28 * across);
-    let points = panel.area.width * length / across;
-    let text =
-        if length >= 1000.0 { format!("{} km", number(length / 1000.0, 0)) } else { format!("{length} m") };
-    let (width, height) = (points + 28.0, 34.0);
-    let top = panel.area.bottom() - height - 8.0;
-    let corners = [panel.area.left + 8.0, panel.area.right() - width - 8.0];
-    let corners = corners.map(|left| Area { left, top, width, height });
-    let hidden = |area: &Area| taken.iter().filter(|&&p| area.contains(p)).count();
-    let area = if hidden(&corners[1]) < hidden(&corners[0]) { corners[1] } else { corners[0] };
-    canvas.fill(&area.corners(), WHITE, 0.85);
-    let (left, y) = (area.left + 14.0, area.bottom() - 10.0);
-    let half = left + 0.5 * points;
-    canvas.line(&[[left, y], [left + points, y]], Pen::new(INK, 5.0));
-    canvas.line(&[[half, y], [left + points - 0.5, y]], Pen::new(WHITE, 3.0));
-    canvas.text(&text, [half, y - 7.0], Lettering::new(12.0, [0.5, 0.0]));
-    area
-}
-
-/// Elevations at the pixels of a map.
-struct Relief<'a> {
-    elevation: &'a [f64],
-    columns: usize,
-    rows: usize,
-}
-
-impl Relief<'_> {
-    /// Change of elevation per pixel to the right and downwards.
-    fn gradient(&self, column: usize, row: usize) -> [f64; 2] {
-        let z = |column: usize, row: usize| self.elevation[row * self.columns + column];
-        let (left, right) = (column.saturating_sub(1), (column + 1).min(self.columns - 1));
-        let (above, below) = (row.saturating_sub(1), (row + 1).min(self.rows - 1));
-        let per = |a: f64, b: f64, n: usize| (b - a) / n.max(1) as f64;
-        [
-            per(z(left, row), z(right, row), right - left),
-            per(z(column, above), z(column, below), below - above),
-        ]
-    }
-
-    fn slope(&self, column: usize, row: usize) -> f64 {
-        let [across, down] = self.gradient(column, row);
-        let slope = across.hypot(down);
-        if slope.is_finite() { slope } else { 0.0 }
-    }
-
-    /// Writes the elevation on strong contour lines where they run straight, are not covered, and not beside another.
-    fn label(
-        &self,
-        canvas: &mut Canvas,
-        panel: &Panel,
-        contours: Contours,
-        covered: impl Fn(usize, usize) -> bool,
-    ) {
-        let interval = contours.interval * Contours::EACH;
-        let mut placed: Vec<[f64; 2]> = Vec::new();
-        let rim = 60;
-        let z = |column: usize, row: usize| self.elevation[row * self.columns + column];
-        for row in (rim..self.rows.saturating_sub(rim)).step_by(6) {
-            for column in (rim..self.columns.saturating_sub(rim)).step_by(6) {
-                let [across, down] = self.gradient(column, row);
-                let slope = across.hypot(down);
-                let level = (z(column, row) / interval).round() * interval;
-                let crosses = (z(column, row) - level).abs() < 2.0 * slope;
-                let roomy = slope * 26.0 < interval; // lines at least 13 points apart
-                if !(crosses && roomy && slope > 0.0) {
-                    continue;
-                }
-                // The ends of the text must lie on the same line.
-                let along = [-down / slope, across / slope];
-                let straight = [-1.0, -0.5, 0.5, 1.0].iter().all(|t| {
-                    let (c, r) = (column as f64 + t * 44.0 * along[0], row as f64 + t * 44.0 * along[1]);
-                    let (c, r) = (c as usize, r as usize);
-                    c < self.columns
-                        && r < self.rows
-                        && (z(c, r) - level).abs() < 5.0 * slope
-                        && !covered(c, r)
-                });
-                let place = panel.area.at_pixel(column, row);
-                let apart = placed.iter().all(|p| (p[0] - place[0]).hypot(p[1] - place[1]) > 120.0);
-                if straight && apart && !covered(column, row) {
-                    let angle = (-along[1] / along[0]).atan().to_degrees();
-                    let colour = [80, 55, 35];
-                    let how = Lettering { angle, colour, halo: true, ..Lettering::new(9.5, [0.5, 0.5]) };
-                    canvas.text(&number(level, 0), place, how);
-                    placed.push(place);
-                }
-            }
-        }
     }
 }
 

@@ -1,6 +1,8 @@
 //! The section along a path: ground, deposit and greatest thickness above, greatest speed below.
 
-use super::axes::{Axis, Panel, RIM, Scale, bottom_room, extent, heading, heading_height, left_room};
+use super::axes::{
+    Axis, CAPTION_SIZE, Caption, Panel, RIM, Scale, bottom_room, extent, heading, heading_height, left_room,
+};
 use super::canvas::{Area, Canvas};
 use super::curves::{Curve, Fill, Style, draw_all, legend, taken};
 use super::ticks::{round_length, short};
@@ -63,10 +65,20 @@ impl Figure for Section<'_> {
             let height = |(bed, h): (&f64, &f64)| bed + factor * if h.is_finite() { h.max(0.0) } else { 0.0 };
             self.bed.iter().zip(layer).map(height).collect()
         };
-        let (surface, envelope) = (raised(self.deposit), raised(self.peak_thickness));
-        let times = if factor == 1.0 { String::new() } else { format!(", thickness × {}", short(factor)) };
+        let (surface, mut envelope) = (raised(self.deposit), raised(self.peak_thickness));
+        // Where nothing ever passed there is no envelope.
+        for (k, height) in envelope.iter_mut().enumerate() {
+            if self.peak_thickness[k.saturating_sub(1)..(k + 2).min(n)].iter().all(|&h| h <= 0.0) {
+                *height = f64::NAN;
+            }
+        }
+        let times = if factor == 1.0 { String::new() } else { format!("× {}", short(factor)) };
         let ground = if times.is_empty() { "ground" } else { "ground (true height)" };
-        let (resting, passing) = (format!("deposit{times}"), format!("greatest thickness{times}"));
+        let named = |layer: &str, thick: &str| {
+            if times.is_empty() { layer.into() } else { format!("{layer} ({thick}{times})") }
+        };
+        let (resting, passing): (String, String) =
+            (named("deposit", "thickness "), named("greatest thickness", ""));
         let x = self.distance;
         let curves = [
             Curve { name: ground, x, y: self.bed, style: Style::Solid, colour: Some([70, 62, 54]) },
@@ -88,25 +100,31 @@ impl Figure for Section<'_> {
             .map(|[_, high]| [0.0, if high > 0.0 { 1.08 * high } else { 1.0 }]);
 
         let (width, upper, lower, gap) = (840.0, 330.0, 130.0, 14.0);
-        let caption = "distance along the path (m)";
+        let caption = Caption::new("distance along the path", "m");
+        let (heights_of, speeds_of) = (Caption::new("elevation", "m"), Caption::new("greatest speed", "m/s"));
         let head = heading_height(self.title, self.subtitle);
         let below = if speeds.is_some() { lower + gap } else { 0.0 };
-        let mut canvas = Canvas::new(width, head + upper + below + bottom_room(caption) + RIM);
+        let mut canvas = Canvas::new(width, head + upper + below + bottom_room(&caption) + RIM);
         heading(&mut canvas, self.title, self.subtitle, width);
-        let mut left = left_room(&elevation.upright_ticks(upper), "y");
+        let mut left = left_room(&elevation.upright_ticks(upper), &heights_of);
         if let Some(speeds) = speeds {
-            left = left.max(left_room(&Scale::new(speeds).upright_ticks(lower), "y"));
+            left = left.max(left_room(&Scale::new(speeds).upright_ticks(lower), &speeds_of));
         }
         let area =
             Area { left: left + RIM, top: head, width: width - left - 2.0 * RIM - 10.0, height: upper };
-        let panel = |area, y, x_caption: &str, y_caption: &str| {
-            Panel::within(area, distance, y, x_caption.into(), y_caption.into())
+        let panel = |area, y, x_caption: Caption, y_caption: Caption| {
+            Panel::within(area, distance, y, x_caption, y_caption).with_caption_at(RIM + CAPTION_SIZE)
         };
-        let mut top = panel(area, elevation, if speeds.is_some() { "" } else { caption }, "elevation (m)");
+        let mut top = panel(
+            area,
+            elevation,
+            if speeds.is_some() { Caption::default() } else { caption.clone() },
+            heights_of,
+        );
         if let Some(speeds) = speeds {
             top = top.without_x_labels();
             let area = Area { top: head + upper + gap, height: lower, ..area };
-            let bottom = panel(area, Scale::new(speeds), caption, "greatest speed (m/s)");
+            let bottom = panel(area, Scale::new(speeds), caption, speeds_of);
             bottom.draw_grid(&mut canvas);
             let speed = Curve { name: "", x, y: self.peak_speed, style: Style::Solid, colour: Some(FLOW) };
             draw_all(

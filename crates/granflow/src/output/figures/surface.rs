@@ -1,12 +1,12 @@
 //! A surface z(x, y) or z(x, t) in perspective, hidden parts hidden, coloured by height.
 
-use super::axes::{Axis, RIM, Scale, TICK_SIZE, extent, heading};
+use super::axes::{Axis, RIM, Scale, TICK_SIZE, extent, heading, heading_height};
 use super::canvas::{Area, Canvas, Lettering, Pen, SCALE};
-use super::colours::{Colours, INK, PALE, Rgb, mix, pick, shade};
+use super::colours::{Colours, INK, PALE, mix, pick, shade};
+use super::depth::{Depth, Vertex};
 use super::heat::check_coordinates;
-use super::ticks::{Ticks, linear, superscript};
+use super::ticks::{Ticks, linear};
 use super::{Figure, FigureError, Picture};
-use tiny_skia::{Pixmap, PremultipliedColorU8};
 
 /// A surface over a rectangle.
 #[derive(Debug, Clone, Copy, Default)]
@@ -55,7 +55,8 @@ fn dot(a: [f64; 3], b: [f64; 3]) -> f64 {
 }
 
 impl Eye {
-    fn new(azimuth: f64, elevation: f64, half: [f64; 3], area: Area) -> Self {
+    /// The eye that sees the box as great as `area` allows; the area's height shrinks to what is used.
+    fn new((azimuth, elevation): (f64, f64), half: [f64; 3], area: &mut Area) -> Self {
         let ((sa, ca), (se, ce)) = (azimuth.to_radians().sin_cos(), elevation.to_radians().sin_cos());
         let mut eye = Self {
             right: [-sa, ca, 0.0],
@@ -71,6 +72,8 @@ impl Eye {
             corners.map(|corner| eye.place(corner)).map(|p| (p[0], p[1])).unzip();
         let ([x0, x1], [y0, y1]) = (extent(xs).unwrap_or([0.0, 1.0]), extent(ys).unwrap_or([0.0, 1.0]));
         eye.zoom = (area.width / (x1 - x0)).min(area.height / (y1 - y0));
+        area.top = area.top.round(); // the picture of the surface is laid on whole pixels
+        area.height = eye.zoom * (y1 - y0);
         eye.middle = [
             area.left + 0.5 * area.width - eye.zoom * 0.5 * (x0 + x1),
             area.top + 0.5 * area.height - eye.zoom * 0.5 * (y0 + y1),
@@ -86,95 +89,6 @@ impl Eye {
     fn place(&self, p: [f64; 3]) -> [f64; 2] {
         let size = self.zoom * self.distance * self.nearness(p);
         [self.middle[0] + size * dot(p, self.right), self.middle[1] - size * dot(p, self.up)]
-    }
-}
-
-/// A corner of the surface in the picture: place in pixels, nearness, height, light, position in the lattice.
-#[derive(Debug, Clone, Copy)]
-struct Vertex {
-    place: [f64; 2],
-    nearness: f64,
-    height: f64,
-    light: f64,
-    mesh: [f64; 2],
-}
-
-/// Pixels with the nearness of what is seen in them.
-struct Depth {
-    width: usize,
-    height: usize,
-    nearness: Vec<f32>,
-    colour: Vec<Rgb>,
-}
-
-impl Depth {
-    /// Paints a triangle where nothing nearer was painted.
-    fn triangle(&mut self, [a, b, c]: [Vertex; 3], spacing: [f64; 2], colour: impl Fn(f64, f64, f64) -> Rgb) {
-        let cross = |o: [f64; 2], p: [f64; 2], q: [f64; 2]| {
-            (p[0] - o[0]) * (q[1] - o[1]) - (p[1] - o[1]) * (q[0] - o[0])
-        };
-        let doubled = cross(a.place, b.place, c.place);
-        if doubled.abs() < 1e-9 || !doubled.is_finite() {
-            return;
-        }
-        let bounds = |k: usize, n: usize| {
-            let values = [a.place[k], b.place[k], c.place[k]];
-            let low = values.iter().fold(f64::INFINITY, |m, &v| m.min(v)).floor().max(0.0);
-            let high = values.iter().fold(0.0, |m: f64, &v| m.max(v)).ceil().min(n as f64);
-            (low as usize)..(high as usize)
-        };
-        let mesh_gradient: [f64; 2] = std::array::from_fn(|k| {
-            let (db, dc) = (b.mesh[k] - a.mesh[k], c.mesh[k] - a.mesh[k]);
-            let gx = db * (c.place[1] - a.place[1]) - dc * (b.place[1] - a.place[1]);
-            let gy = dc * (b.place[0] - a.place[0]) - db * (c.place[0] - a.place[0]);
-            gx.hypot(gy) / doubled.abs()
-        });
-        for row in bounds(1, self.height) {
-            for column in bounds(0, self.width) {
-                let p = [column as f64 + 0.5, row as f64 + 0.5];
-                let (wb, wc) = (cross(a.place, p, c.place) / doubled, cross(a.place, b.place, p) / doubled);
-                let wa = 1.0 - wb - wc;
-                let rim = -1e-6;
-                if wa < rim || wb < rim || wc < rim {
-                    continue;
-                }
-                let of = |f: fn(&Vertex) -> f64| wa * f(&a) + wb * f(&b) + wc * f(&c);
-                let nearness = of(|v| v.nearness) as f32;
-                let index = row * self.width + column;
-                if nearness <= self.nearness[index] {
-                    continue;
-                }
-                let line = (0..2).map(|k| {
-                    let at = wa * a.mesh[k] + wb * b.mesh[k] + wc * c.mesh[k];
-                    let away =
-                        (at - (at / spacing[k]).round() * spacing[k]).abs() / mesh_gradient[k].max(1e-12);
-                    let crowded = (spacing[k] / mesh_gradient[k].max(1e-12) / 14.0).min(1.0);
-                    (1.3 - away).clamp(0.0, 1.0) * crowded
-                });
-                let ink = line.fold(0.0, f64::max);
-                self.nearness[index] = nearness;
-                self.colour[index] = colour(of(|v| v.height), of(|v| v.light), ink);
-            }
-        }
-    }
-
-    /// The picture at half the resolution, each pixel the mean of four.
-    fn halved(&self) -> Option<Pixmap> {
-        let (width, height) = (self.width / 2, self.height / 2);
-        let mut image = Pixmap::new(u32::try_from(width).ok()?, u32::try_from(height).ok()?)?;
-        for (k, pixel) in image.pixels_mut().iter_mut().enumerate() {
-            let first = 2 * (k / width) * self.width + 2 * (k % width);
-            let mut sum = [0u16; 4];
-            for index in [first, first + 1, first + self.width, first + self.width + 1] {
-                if self.nearness[index] > 0.0 {
-                    let [r, g, b] = self.colour[index];
-                    [r, g, b, 255].iter().zip(&mut sum).for_each(|(&part, sum)| *sum += u16::from(part));
-                }
-            }
-            let [r, g, b, a] = sum.map(|s| (s / 4) as u8);
-            *pixel = PremultipliedColorU8::from_rgba(r, g, b, a).unwrap_or(*pixel);
-        }
-        Some(image)
     }
 }
 
@@ -214,12 +128,9 @@ impl Edge<'_> {
             let width = super::typeface::width(label, TICK_SIZE);
             deepest = deepest.max(9.0 + width * away[0].abs() + TICK_SIZE * 0.73 * away[1].abs());
         }
-        let mut caption = self.axis.caption();
-        if self.ticks.exponent != 0 {
-            caption = format!("{caption}  ×10{}", superscript(self.ticks.exponent));
-        }
+        let caption = self.axis.caption().text(self.ticks.exponent);
         let mut angle = (-(ends[1][1] - ends[0][1])).atan2(ends[1][0] - ends[0][0]).to_degrees();
-        if !(-89.0..=91.0).contains(&angle) {
+        if !(-80.0..=100.0).contains(&angle) {
             angle -= 180.0 * angle.signum();
         }
         let middle = [0.5 * (ends[0][0] + ends[1][0]), 0.5 * (ends[0][1] + ends[1][1])];
@@ -235,26 +146,22 @@ impl Figure for Surface<'_> {
         check_coordinates(self.title, "ordinates", self.ys)?;
         FigureError::same_length(self.title, "the surface", self.values.len(), nx * ny)?;
         let found = extent(self.values.iter().copied());
-        let heights = self.z.range_of(found, 0.02);
+        let heights = self.z.range_of(found, 0.0);
         let heights = heights.ok_or_else(|| FigureError::empty(self.title, "no finite height"))?;
         let scales = [[self.xs[0], self.xs[nx - 1]], [self.ys[0], self.ys[ny - 1]], heights].map(Scale::new);
 
-        let (width, height) = (800.0, 620.0);
-        let mut canvas = Canvas::new(width, height);
-        let top = heading(&mut canvas, self.title, self.subtitle, width);
-        let area =
-            Area { left: 82.0, top: top + 4.0, width: width - 164.0, height: height - top - 70.0 - RIM };
         let sides = self
             .proportions
             .filter(|p| p.iter().all(|&s| s > 0.0 && s.is_finite()))
             .unwrap_or([1.0, 1.0, 0.6]);
         let half = sides.map(|side| 0.5 * side);
-        let eye = Eye::new(
-            self.azimuth.unwrap_or(-60.0),
-            self.elevation.unwrap_or(32.0).clamp(5.0, 85.0),
-            half,
-            area,
-        );
+        let (width, top) = (800.0, heading_height(self.title, self.subtitle));
+        let mut area = Area { left: 82.0, top: top + 4.0, width: width - 164.0, height: 480.0 };
+        let towards = (self.azimuth.unwrap_or(-60.0), self.elevation.unwrap_or(32.0).clamp(5.0, 85.0));
+        let eye = Eye::new(towards, half, &mut area);
+        let height = area.bottom() + 62.0 + RIM;
+        let mut canvas = Canvas::new(width, height);
+        heading(&mut canvas, self.title, self.subtitle, width);
         let side = |a: usize| if eye.towards[a] >= 0.0 { half[a] } else { -half[a] };
         let near = [side(0), side(1)];
         draw_box(&mut canvas, &eye, half, near, &scales, [&self.x, &self.y, &self.z]);
@@ -276,7 +183,8 @@ impl Figure for Surface<'_> {
                 .map(|s| if s.is_finite() { s } else { 0.0 });
             let normal = [-slopes[0], -slopes[1], 1.0];
             let light = dot(normal, sun).max(0.0) / dot(normal, normal).sqrt();
-            let place = eye.place(p).map(|c| c * fine);
+            let [x, y] = eye.place(p);
+            let place = [(x - area.left) * fine, (y - area.top) * fine];
             height.is_finite().then(|| Vertex {
                 place,
                 nearness: eye.nearness(p),
@@ -285,17 +193,15 @@ impl Figure for Surface<'_> {
                 mesh: [i as f64, j as f64],
             })
         };
-        let (columns, rows) = ((width * fine) as usize, (height * fine) as usize);
-        let size = columns * rows;
-        let mut depth =
-            Depth { width: columns, height: rows, nearness: vec![0.0; size], colour: vec![[255; 3]; size] };
+        let [columns, rows] = [area.width, area.height].map(|side| 2 * (side * SCALE).ceil() as usize);
+        let mut depth = Depth::new(columns, rows);
         let lines = self.lines.unwrap_or(30);
         let spacing = [nx, ny].map(|n| {
             if lines == 0 { f64::INFINITY } else { ((n - 1) as f64 / lines as f64).ceil().max(1.0) }
         });
         let (table, range) = (self.colours.table(), self.colours.range(found.unwrap_or(heights)));
         let colour = |height: f64, light: f64, ink: f64| {
-            let base = shade(pick(&table, height, range), 0.62 + 0.42 * light);
+            let base = shade(pick(&table, height, range), 0.74 + 0.30 * light);
             mix(base, [20, 20, 30], if lines == 0 { 0.0 } else { 0.55 * ink })
         };
         let line = |j: usize| -> Vec<Option<Vertex>> { (0..nx).map(|i| vertex(i, j)).collect() };
@@ -313,7 +219,7 @@ impl Figure for Surface<'_> {
             before = after;
         }
         if let Some(image) = depth.halved() {
-            canvas.image(&image, [0.0, 0.0]);
+            canvas.image(&image, [area.left, area.top]);
         }
         Ok(canvas.finish())
     }
@@ -372,4 +278,23 @@ fn draw_box(
     let [x, y] = if left(&silhouettes[0]) < left(&silhouettes[1]) { silhouettes[0] } else { silhouettes[1] };
     let outward = eye.right.map(|r| -r);
     edge(2, [x, y, 0.0], outward).draw(canvas, eye, half);
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_box_fills_the_area_and_keeps_left_and_right() {
+        let mut area = Area { left: 10.0, top: 20.0, width: 600.0, height: 5000.0 };
+        let half = [0.5, 0.5, 0.3];
+        let eye = Eye::new((-60.0, 30.0), half, &mut area);
+        assert!(area.height < 600.0);
+        let corners =
+            (0..8).map(|k| std::array::from_fn(|a| if k >> a & 1 == 1 { half[a] } else { -half[a] }));
+        let xs = extent(corners.map(|c| eye.place(c)[0])).unwrap();
+        assert!((xs[0] - 10.0).abs() < 1e-9 && (xs[1] - 610.0).abs() < 1e-9);
+        assert!(eye.place([0.5, 0.0, 0.0])[0] > eye.place([-0.5, 0.0, 0.0])[0]);
+        assert!(eye.nearness([0.0, -0.5, 0.0]) > eye.nearness([0.0, 0.5, 0.0]));
+    }
 }

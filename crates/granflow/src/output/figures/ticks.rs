@@ -114,9 +114,10 @@ pub(super) fn logarithmic([low, high]: [f64; 2], most: usize) -> Ticks {
         decades.clone().flat_map(|e| digits.iter().map(move |d| d * 10f64.powi(e))).filter(inside).collect()
     };
     let minor = if tens.len() > 12 { Vec::new() } else { all(&[2.0, 3.0, 4.0, 5.0, 6.0, 7.0, 8.0, 9.0]) };
-    if tens.len() < 2 {
-        let fine = all(&[1.0, 2.0, 3.0, 5.0]);
-        let at = if fine.len() <= most { fine } else { all(&[1.0, 2.0, 5.0]) };
+    let fine = [vec![1.0, 2.0, 3.0, 5.0], vec![1.0, 2.0, 5.0]].map(|digits| all(&digits));
+    if tens.len() < 3
+        && let Some(at) = fine.into_iter().find(|at| at.len() <= most.max(3))
+    {
         let labels = at.iter().map(|&v| short(v)).collect();
         return Ticks { at, labels, exponent: 0, minor };
     }
