@@ -11,6 +11,8 @@ pub mod output;
 pub mod raster;
 pub mod real;
 pub mod release;
+pub mod results;
+pub mod run;
 pub mod savage_hutter;
 pub mod scheme;
 pub mod setup;

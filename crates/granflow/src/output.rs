@@ -6,6 +6,7 @@
 mod base64;
 pub mod checkpoint;
 pub mod csv;
+pub mod figures;
 pub mod frames;
 mod hdf5;
 pub mod ledger;

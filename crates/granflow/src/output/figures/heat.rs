@@ -1,0 +1,155 @@
+//! A field seen from above: over a plane, or over space and time (the "Draufsicht" of the papers).
+
+use super::axes::{
+    Axis, Panel, RIM, Scale, bottom_room, extent, heading, heading_height, left_room, widened,
+};
+use super::canvas::{Area, Canvas, Pen};
+use super::colour_bar::ColourBar;
+use super::colours::{Colours, INK, Rgb, WHITE, pick};
+use super::lattice::{Between, Lattice, paint};
+use super::{Figure, FigureError, Picture};
+
+/// What the two axes of a [`HeatMap`] are.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Frame {
+    /// Two lengths at the same scale; coordinates are centres of cells, the picture reaches half a cell beyond them.
+    #[default]
+    Plane,
+    /// Cell centres along x, instants along y; the picture reaches from the first instant to the last.
+    SpaceTime,
+}
+
+/// A line over a map or a plane: a release area, the edge of a table, a path.
+#[derive(Debug, Clone, Copy, Default)]
+pub struct Outline<'a> {
+    /// Its name in the legend; empty for none.
+    pub name: &'a str,
+    /// Its points in the coordinates of the axes.
+    pub points: &'a [[f64; 2]],
+    /// Whether the last point is joined to the first.
+    pub closed: bool,
+    /// Whether it is dashed.
+    pub dashed: bool,
+    /// Its colour; dark grey where `None`.
+    pub colour: Option<Rgb>,
+}
+
+impl Outline<'_> {
+    pub(super) fn pen(&self) -> Pen {
+        let dashes: &'static [f32] = if self.dashed { &[6.0, 4.0] } else { &[] };
+        Pen { dashes, ..Pen::new(self.colour.unwrap_or(INK), 1.8) }
+    }
+
+    pub(super) fn draw(&self, canvas: &mut Canvas, panel: &Panel) {
+        let line: Vec<_> = self.points.iter().map(|&[x, y]| panel.place(x, y)).collect();
+        let casing = Pen { alpha: 0.7, ..Pen::new(WHITE, 3.6) };
+        for pen in [casing, self.pen()] {
+            if self.closed { canvas.ring(&line, pen) } else { canvas.line(&line, pen) }
+        }
+    }
+}
+
+/// A field z(x, y) or z(x, t) as colours, with colour bar.
+#[derive(Debug, Clone, Copy, Default)]
+pub struct HeatMap<'a> {
+    /// The heading.
+    pub title: &'a str,
+    /// A second, smaller line under it.
+    pub subtitle: &'a str,
+    /// What the axes are.
+    pub frame: Frame,
+    /// The horizontal axis (its range is that of `xs`).
+    pub x: Axis<'a>,
+    /// The vertical axis (its range is that of `ys`).
+    pub y: Axis<'a>,
+    /// Increasing abscissae, at least two.
+    pub xs: &'a [f64],
+    /// Increasing ordinates, at least two.
+    pub ys: &'a [f64],
+    /// The field, `ys.len()` rows of `xs.len()` values; a value that is not finite stays white.
+    pub values: &'a [f64],
+    /// Name, unit and range of the field.
+    pub quantity: Axis<'a>,
+    /// The scale of colours.
+    pub colours: Colours,
+    /// Lines over the field.
+    pub outlines: &'a [Outline<'a>],
+}
+
+impl HeatMap<'_> {
+    /// The range that the picture covers along coordinates.
+    fn covered(coordinates: &[f64], cells: bool) -> [f64; 2] {
+        let n = coordinates.len();
+        let (first, last) = (coordinates[0], coordinates[n - 1]);
+        if !cells {
+            return [first, last];
+        }
+        let (before, after) = (coordinates[1] - first, last - coordinates[n - 2]);
+        [first - 0.5 * before, last + 0.5 * after]
+    }
+}
+
+/// Refuses coordinates that are fewer than two, not finite or not increasing.
+pub(super) fn check_coordinates(figure: &str, what: &str, values: &[f64]) -> Result<(), FigureError> {
+    if values.len() < 2 {
+        return Err(FigureError::empty(figure, format!("fewer than two {what}")));
+    }
+    if values.windows(2).all(|w| w[0] < w[1]) && values.iter().all(|v| v.is_finite()) {
+        return Ok(());
+    }
+    Err(FigureError::empty(figure, format!("{what} do not increase")))
+}
+
+impl Figure for HeatMap<'_> {
+    fn draw(&self) -> Result<Picture, FigureError> {
+        let (nx, ny) = (self.xs.len(), self.ys.len());
+        check_coordinates(self.title, "abscissae", self.xs)?;
+        check_coordinates(self.title, "ordinates", self.ys)?;
+        FigureError::same_length(self.title, "the field", self.values.len(), nx * ny)?;
+        let none = || FigureError::empty(self.title, "no finite value in the field");
+        let found = extent(self.values.iter().copied());
+        let flat = found.is_some_and(|[low, high]| high - low <= 1e-9 * high.abs().max(low.abs()));
+        let range = self.quantity.range_of(found.map(|r| if flat { widened(r, 0.0) } else { r }), 0.0);
+        let range = self.colours.range(range.ok_or_else(none)?);
+
+        let x = Scale::new(Self::covered(self.xs, true));
+        let y = Scale::new(Self::covered(self.ys, self.frame == Frame::Plane));
+        let (x_caption, y_caption) = (self.x.caption(), self.y.caption());
+        let bar = ColourBar { colours: self.colours, range, caption: self.quantity.caption() };
+        let top = heading_height(self.title, self.subtitle);
+        let (mut wide, mut high) = (590.0, 400.0);
+        if self.frame == Frame::Plane {
+            let ratio = (y.range[1] - y.range[0]) / (x.range[1] - x.range[0]);
+            (wide, high) = if ratio < 0.9 { (620.0, 620.0 * ratio) } else { (560.0 / ratio, 560.0) };
+            (wide, high) = (wide.max(150.0), high.max(110.0)); // beyond 4 to 1 the scales part
+        }
+        let left = RIM + left_room(&y.upright_ticks(high), &y_caption);
+        let room = 16.0 + bar.room(high);
+        let (width, height) = (left + wide + room + RIM, top + high + bottom_room(&x_caption) + RIM);
+
+        let mut canvas = Canvas::new(width, height);
+        heading(&mut canvas, self.title, self.subtitle, width);
+        let area = Area { left, top, width: wide, height: high };
+        let panel = Panel::within(area, x, y, x_caption, y_caption);
+        let (columns, rows) = panel.area.pixels();
+        let at = |k: usize, n: usize, [low, high]: [f64; 2]| low + (high - low) * (k as f64 + 0.5) / n as f64;
+        let across: Vec<_> = (0..columns).map(|k| Between::among(at(k, columns, x.range), self.xs)).collect();
+        let up: Vec<_> =
+            (0..rows).map(|k| Between::among(at(rows - 1 - k, rows, y.range), self.ys)).collect();
+        let field = Lattice { values: self.values, nx };
+        let table = self.colours.table();
+        let image = paint((columns, rows), |column, row| {
+            let value = field.at(across[column], up[row]);
+            value.is_finite().then(|| pick(&table, value, range))
+        });
+        if let Some(image) = image {
+            canvas.image(&image, [panel.area.left, panel.area.top]);
+        }
+        canvas.clip(Some(panel.area));
+        self.outlines.iter().for_each(|outline| outline.draw(&mut canvas, &panel));
+        canvas.clip(None);
+        panel.draw_frame(&mut canvas);
+        bar.draw(&mut canvas, panel.area.right() + 16.0, panel.area.top, panel.area.height);
+        Ok(canvas.finish())
+    }
+}

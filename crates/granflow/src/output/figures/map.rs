@@ -1,0 +1,294 @@
+//! The map: shaded mountain, contour lines, a field laid over it, outlines, scale bar.
+
+use rayon::prelude::*;
+
+use super::axes::{
+    Axis, Caption, Panel, RIM, Scale, bottom_room, extent, heading, heading_height, left_room,
+};
+use super::canvas::{Area, Canvas};
+use super::colour_bar::ColourBar;
+use super::colours::{Colours, mix, pick, shade};
+use super::contours::{Contours, Elevations};
+use super::heat::Outline;
+use super::lattice::{Between, Lattice, paint};
+use super::legend::{Key, Legend, along};
+use super::relief::{ground, hillshade};
+use super::scale_bar::ScaleBar;
+use super::{Figure, FigureError, Picture};
+
+/// Where a raster lies: row 0 is the southernmost, values belong to whole cells.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub struct Extent {
+    /// Cells from west to east, at least two.
+    pub nx: usize,
+    /// Cells from south to north, at least two.
+    pub ny: usize,
+    /// The western edge (not centre) of the first column.
+    pub west: f64,
+    /// The southern edge of the first row.
+    pub south: f64,
+    /// Side of a cell.
+    pub cell: f64,
+}
+
+impl Extent {
+    fn east(&self) -> f64 {
+        self.west + self.nx as f64 * self.cell
+    }
+    fn north(&self) -> f64 {
+        self.south + self.ny as f64 * self.cell
+    }
+}
+
+/// The field laid over the mountain.
+#[derive(Debug, Clone, Copy, Default)]
+pub struct Overlay<'a> {
+    /// `ny` rows of `nx` values as the bed; a value that is not finite counts as zero.
+    pub values: &'a [f64],
+    /// Name, unit and range of the field.
+    pub quantity: Axis<'a>,
+    /// The mountain shows where the field is not above this.
+    pub threshold: f64,
+    /// The scale of colours.
+    pub colours: Colours,
+}
+
+/// A map of a mountain with what happened on it.
+#[derive(Debug, Clone, Copy)]
+pub struct Map<'a> {
+    /// The heading.
+    pub title: &'a str,
+    /// A second, smaller line under it.
+    pub subtitle: &'a str,
+    /// Where the rasters lie.
+    pub extent: Extent,
+    /// Elevation of the ground, `ny` rows of `nx` values; white where not finite.
+    pub bed: &'a [f64],
+    /// The field over it.
+    pub overlay: Option<Overlay<'a>>,
+    /// Lines over both.
+    pub outlines: &'a [Outline<'a>],
+    /// Whether contour lines of the elevation are drawn.
+    pub contours: bool,
+    /// Shows only the box around field and outlines, widened on each side by this share of its greater side.
+    pub crop: Option<f64>,
+}
+
+impl Default for Map<'_> {
+    fn default() -> Self {
+        let (title, subtitle, bed, outlines): (_, _, &[f64], &[Outline]) = ("", "", &[], &[]);
+        Self {
+            title,
+            subtitle,
+            extent: Extent::default(),
+            bed,
+            overlay: None,
+            outlines,
+            contours: true,
+            crop: Some(0.12),
+        }
+    }
+}
+
+/// The part of the world that a map shows.
+#[derive(Debug, Clone, Copy, PartialEq)]
+struct View {
+    x: [f64; 2],
+    y: [f64; 2],
+}
+
+impl Map<'_> {
+    /// The whole raster, or the box around what is of interest, not narrower than 1 to 2.2.
+    fn view(&self) -> View {
+        let e = self.extent;
+        let whole = View { x: [e.west, e.east()], y: [e.south, e.north()] };
+        let Some(margin) = self.crop else { return whole };
+        let (mut xs, mut ys): (Vec<f64>, Vec<f64>) =
+            self.outlines.iter().flat_map(|o| o.points).map(|p| (p[0], p[1])).unzip();
+        if let Some(overlay) = self.overlay {
+            for (k, _) in overlay.values.iter().enumerate().filter(|&(_, &v)| v > overlay.threshold) {
+                let (i, j) = ((k % e.nx) as f64, (k / e.nx) as f64);
+                xs.extend([e.west + i * e.cell, e.west + (i + 1.0) * e.cell]);
+                ys.extend([e.south + j * e.cell, e.south + (j + 1.0) * e.cell]);
+            }
+        }
+        let (Some([x0, x1]), Some([y0, y1])) = (extent(xs), extent(ys)) else { return whole };
+        let greater = (x1 - x0).max(y1 - y0).max(12.0 * e.cell);
+        // Each side: the box and its margin, the other side over 2.2 at least, the raster at most.
+        let side = |[low, high]: [f64; 2], [least, most]: [f64; 2]| {
+            let half = (0.5 * (high - low) + margin.max(0.0) * greater).max(greater / 4.4);
+            let middle = 0.5 * (low + high);
+            let (low, high) = ((middle - half).max(least), (middle + half).min(most));
+            if low < high { [low, high] } else { [least, most] }
+        };
+        View { x: side([x0, x1], whole.x), y: side([y0, y1], whole.y) }
+    }
+
+    fn check(&self) -> Result<(), FigureError> {
+        let e = self.extent;
+        if e.nx < 2
+            || e.ny < 2
+            || !(e.cell > 0.0 && e.cell.is_finite() && e.west.is_finite() && e.south.is_finite())
+        {
+            return Err(FigureError::empty(
+                self.title,
+                "a raster of fewer than two cells along an axis, or without a place",
+            ));
+        }
+        FigureError::same_length(self.title, "the bed", self.bed.len(), e.nx * e.ny)?;
+        self.overlay.map_or(Ok(()), |o| {
+            FigureError::same_length(self.title, "the field", o.values.len(), e.nx * e.ny)
+        })
+    }
+}
+
+/// The range of colours of an overlay: from zero (or the threshold) to its greatest value.
+fn colour_range(overlay: &Overlay) -> [f64; 2] {
+    let found = extent(overlay.values.iter().copied().filter(|&v| v > overlay.threshold));
+    let range = overlay.quantity.range_of(found.map(|[low, high]| [low.min(0.0), high]), 0.0);
+    match range {
+        Some(range) if range[0] < range[1] => overlay.colours.range(range),
+        _ => [0.0, if overlay.threshold > 0.0 { 2.0 * overlay.threshold } else { 1.0 }],
+    }
+}
+
+impl Figure for Map<'_> {
+    fn draw(&self) -> Result<Picture, FigureError> {
+        self.check()?;
+        let e = self.extent;
+        let view = self.view();
+        let scale = |range| Scale { coordinates: true, ..Scale::new(range) };
+        let (x, y) = (scale(view.x), scale(view.y));
+        let ratio = (view.y[1] - view.y[0]) / (view.x[1] - view.x[0]);
+        let (wide, high) = if ratio < 0.95 { (640.0, 640.0 * ratio) } else { (610.0 / ratio, 610.0) };
+        let overlay = self.overlay.map(|overlay| (overlay, colour_range(&overlay)));
+        let bar =
+            overlay.map(|(o, range)| ColourBar { colours: o.colours, range, caption: o.quantity.caption() });
+        let room = bar.as_ref().map_or(10.0, |bar| 16.0 + bar.room(high));
+        let head = heading_height(self.title, self.subtitle);
+        let (easting, northing) = (Caption::new("easting", "m"), Caption::new("northing", "m"));
+        let left = RIM + left_room(&y.upright_ticks(high), &northing);
+        let (width, height) = (left + wide + room + RIM, head + high + bottom_room(&easting) + RIM);
+
+        let mut canvas = Canvas::new(width, height);
+        heading(&mut canvas, self.title, self.subtitle, width);
+        let area = Area { left, top: head, width: wide, height: high };
+        let panel = Panel::within(area, x, y, easting, northing);
+
+        let (columns, rows) = panel.area.pixels();
+        let at = |k: usize, n: usize, [low, high]: [f64; 2]| low + (high - low) * (k as f64 + 0.5) / n as f64;
+        let across: Vec<_> = (0..columns)
+            .map(|k| Between::new((at(k, columns, view.x) - e.west) / e.cell - 0.5, e.nx))
+            .collect();
+        let up: Vec<_> = (0..rows)
+            .map(|k| Between::new((at(rows - 1 - k, rows, view.y) - e.south) / e.cell - 0.5, e.ny))
+            .collect();
+        let lattice = |values| Lattice { values, nx: e.nx };
+        let light = hillshade(self.bed, e.nx, e.ny, e.cell);
+        let light = lattice(&light);
+        let mut elevation = vec![f64::NAN; columns * rows];
+        elevation.par_chunks_mut(columns).zip(&up).for_each(|(line, &up)| {
+            line.iter_mut().zip(&across).for_each(|(z, &across)| *z = lattice(self.bed).at(across, up));
+        });
+        let relief = Elevations { elevation: &elevation, columns, rows };
+        let shown = extent(elevation.iter().copied());
+        let contours = shown.filter(|_| self.contours).and_then(|[low, high]| Contours::over(high - low));
+        let table = overlay.map(|(o, _)| o.colours.table());
+        let zeroed: Vec<f64> = overlay.map_or(Vec::new(), |(o, _)| {
+            o.values.iter().map(|&v| if v.is_finite() { v } else { 0.0 }).collect()
+        });
+        let field = |column: usize, row: usize| lattice(&zeroed).at(across[column], up[row]);
+
+        let image = paint((columns, rows), |column, row| {
+            let z = elevation[row * columns + column];
+            if !z.is_finite() {
+                return None;
+            }
+            let light = light.at(across[column], up[row]);
+            let light = if light.is_finite() { light } else { 0.7 };
+            let mut colour = ground(light);
+            if let (Some((o, range)), Some(table)) = (overlay, &table) {
+                let value = field(column, row);
+                if value > o.threshold {
+                    colour =
+                        mix(colour, shade(pick(table, value, range), (0.80 + 0.34 * light).min(1.06)), 0.88);
+                }
+            }
+            Some(match contours {
+                Some(contours) => contours.over_colour(colour, z, relief.slope(column, row)),
+                None => colour,
+            })
+        });
+        if let Some(image) = image {
+            canvas.image(&image, [panel.area.left, panel.area.top]);
+        }
+
+        canvas.clip(Some(panel.area));
+        let covered =
+            |column: usize, row: usize| overlay.is_some_and(|(o, _)| field(column, row) > o.threshold);
+        let (mut taken, mut lines) = (Vec::new(), Vec::new());
+        for row in (0..rows).step_by(12) {
+            let inside = (0..columns).step_by(12).filter(|&column| covered(column, row));
+            taken.extend(inside.map(|column| panel.area.at_pixel(column, row)));
+        }
+        let mut legend = Legend::default();
+        for outline in self.outlines {
+            let line: Vec<_> = outline.points.iter().map(|&[x, y]| panel.place(x, y)).collect();
+            along(&line, panel.area, &mut lines);
+            legend.add(outline.name, Key::Line(outline.pen()));
+        }
+        taken.extend(&lines);
+        let ruler = ScaleBar::fit(&panel, &taken);
+        along(&ruler.area.corners(), panel.area, &mut taken);
+        let (place, _) = legend.best_place(panel.area, &taken);
+        let boxes = if legend.is_empty() { vec![ruler.area] } else { vec![ruler.area, place] };
+        if let Some(contours) = contours {
+            let free = |column: usize, row: usize| {
+                let p = panel.area.at_pixel(column, row);
+                let beside = |q: &[f64; 2]| (p[0] - q[0]).hypot(p[1] - q[1]) < 12.0;
+                !covered(column, row) && !boxes.iter().any(|b| b.contains(p)) && !lines.iter().any(beside)
+            };
+            relief.label(&mut canvas, &panel, contours, free);
+        }
+        self.outlines.iter().for_each(|outline| outline.draw(&mut canvas, &panel));
+        ruler.draw(&mut canvas);
+        legend.draw(&mut canvas, place);
+        canvas.clip(None);
+        panel.draw_frame(&mut canvas);
+        if let Some(bar) = bar {
+            bar.draw(&mut canvas, panel.area.right() + 16.0, panel.area.top, panel.area.height);
+        }
+        Ok(canvas.finish())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_view_holds_the_field_and_stays_inside() {
+        let extent = Extent { nx: 100, ny: 80, west: 1000.0, south: 2000.0, cell: 10.0 };
+        let bed = vec![0.0; 8000];
+        let mut values = vec![0.0; 8000];
+        for j in 20..60 {
+            values[j * 100 + 3] = 1.0;
+        }
+        let overlay = Overlay { values: &values, threshold: 0.5, ..Default::default() };
+        let map = Map { extent, bed: &bed, overlay: Some(overlay), crop: Some(0.1), ..Default::default() };
+        let view = map.view();
+        assert_eq!(view.y, [2200.0 - 40.0, 2600.0 + 40.0]);
+        assert_eq!(view.x[0], 1000.0);
+        assert!(view.x[1] >= 1040.0 + 40.0 && view.x[1] - view.x[0] < 400.0);
+        let nothing = Map { overlay: None, ..map };
+        assert_eq!(nothing.view().x, [1000.0, 2000.0]);
+    }
+
+    #[test]
+    fn an_overlay_that_nowhere_passes_its_threshold_has_a_range() {
+        let overlay = Overlay { values: &[0.0, 0.01, f64::NAN], threshold: 0.1, ..Default::default() };
+        assert_eq!(colour_range(&overlay), [0.0, 0.2]);
+        let flat = Overlay { values: &[2.0, 2.0], threshold: 0.1, ..Default::default() };
+        assert_eq!(colour_range(&flat), [0.0, 2.0]);
+    }
+}
