@@ -4,10 +4,11 @@ use std::num::NonZeroUsize;
 use std::path::{Path, PathBuf};
 
 use granflow::case::Case;
+use granflow::run::{self, Options};
 
 use crate::failure::Failure;
 use crate::interrupt;
-use crate::progress::Progress;
+use crate::progress::{Progress, Status};
 
 /// What the command line says about a run.
 #[derive(Debug, Clone, Default)]
@@ -33,14 +34,20 @@ impl RunOptions {
 
 /// Computes a case and writes its results.
 pub fn run(case: &Case, options: &RunOptions) -> Result<(), Failure> {
-    let directory = options.directory(case);
-    let (_stop, _progress) = (interrupt::listen()?, Progress::new(options.quiet));
-    let (threads, resume) = (options.threads.map_or(0, NonZeroUsize::get), options.resume);
-    Err(Failure::usage(
-        format!(
-            "this build reads and checks cases but cannot compute them (asked for {}, threads {threads}, resume {resume})",
-            directory.display()
-        ),
-        "take a build with the solver",
-    ))
+    let stop = interrupt::listen()?;
+    let mut progress = Progress::new(options.quiet);
+    let end = case.time.end;
+    let options = Options {
+        directory: options.directory(case),
+        threads: options.threads.map_or(0, NonZeroUsize::get),
+        resume: options.resume,
+        command: std::env::args().collect::<Vec<_>>().join(" "),
+    };
+    let mut report = |status: &run::Status| {
+        let run::Status { time, step, wet_cells, max_speed } = *status;
+        progress.show(&Status { time, end, step, wet_cells, max_speed });
+    };
+    let finished = run::run(case, &options, stop, &mut report)?;
+    progress.finish();
+    Ok(())
 }

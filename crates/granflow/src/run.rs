@@ -156,21 +156,14 @@ where
         let directory = &work.options.directory;
         let (frame_file, ledger_file) = (frames_in(directory), directory.join("mass.csv"));
         let initial = simulation.totals().volume;
-        let (frames, ledger);
-        let mut restored = None;
         if work.options.resume {
             let saved = checkpoint_in(directory);
             let checkpoint = Checkpoint::read(&saved, &case_hash(&work.case.text()))?;
-            restored = Some(checkpoint.time);
-            (frames, ledger) = {
-                let (mut frames, _torn) = Frames::open(&frame_file)?;
-                let mut ledger = Ledger::open(&ledger_file)?;
-                frames.truncate_to(checkpoint.time)?;
-                ledger.truncate_to(checkpoint.time)?;
-                (frames, ledger)
-            };
-            let problem = restore(&mut simulation, &checkpoint);
-            if let Some(problem) = problem {
+            let (mut frames, _torn) = Frames::open(&frame_file)?;
+            let mut ledger = Ledger::open(&ledger_file)?;
+            frames.truncate_to(checkpoint.time)?;
+            ledger.truncate_to(checkpoint.time)?;
+            if let Some(problem) = restore(&mut simulation, &checkpoint) {
                 return Err(RunError::Resume { directory: directory.clone(), problem });
             }
             let scalar = |name: &str| checkpoint.scalar(name).unwrap_or(0.0);
@@ -182,7 +175,6 @@ where
             run.next_line = scalar("next_line");
             return Ok(run);
         }
-        debug_assert!(restored.is_none());
         output::remove_leftovers(directory)?;
         let precision = match work.case.precision() {
             case::Precision::F32 => Precision::F32,
@@ -191,8 +183,8 @@ where
         let length = simulation.grid().count();
         let field = |name: &&str| frames::Field { name: (*name).to_owned(), length };
         let fields = plane.series().iter().map(field).collect();
-        frames = Frames::create(&frame_file, precision, fields)?;
-        ledger = Ledger::create(&ledger_file)?;
+        let frames = Frames::create(&frame_file, precision, fields)?;
+        let ledger = Ledger::create(&ledger_file)?;
         let mut run = Run::new(work, simulation, plane, frames, ledger, initial);
         run.peak_speed = run.simulation.speed();
         run.peak_energy = run.simulation.energy();

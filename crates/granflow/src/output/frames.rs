@@ -133,7 +133,7 @@ impl Frames {
             let problem = format!("a frame has lengths {found:?}, the fields are {:?}", self.fields);
             return Err(Error::invalid(&self.path, problem));
         }
-        if self.times.last().is_some_and(|&last| !(last < time)) {
+        if time.is_nan() || self.times.last().is_some_and(|&last| last >= time) {
             let problem = format!("a frame at time {time} cannot follow the one at {:?}", self.times.last());
             return Err(Error::invalid(&self.path, problem));
         }

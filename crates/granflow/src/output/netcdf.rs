@@ -1,7 +1,7 @@
 //! `result.nc`: a NetCDF-4 file after the CF-1.11 conventions, written without holding the series in memory.
 //!
 //! The crate netcdf-writer builds the skeleton (dimensions, coordinates, attributes, variables with no data yet); the data
-//! are then appended block by block and the skeleton's object headers are told where they lie ([`super::hdf5`]).
+//! are then appended block by block and the skeleton's object headers are told where they lie (`output/hdf5.rs`).
 
 use super::frames::Frames;
 use super::hdf5::{Block, allocate};
@@ -93,7 +93,7 @@ pub struct Variable {
 pub struct Crs {
     /// EPSG code.
     pub epsg: Option<u32>,
-    /// Well-known text, where the input had one.
+    /// Well-known text, where the input had one; else it is looked up by the code.
     pub wkt: Option<String>,
 }
 
@@ -265,14 +265,9 @@ impl Dataset {
             crs.describe(&mut file, id)?;
         }
         for variable in &self.variables {
-            let axes: Vec<_> = dimensions
-                .iter()
-                .filter(|(name, _)| variable.axes.iter().any(|own| own == name))
-                .map(|&(name, id)| (variable.axes.iter().position(|own| own == name), id))
-                .collect();
-            let mut axes = axes;
-            axes.sort_by_key(|&(place, _)| place);
-            let axes: Vec<_> = axes.into_iter().map(|(_, id)| id).collect();
+            let dimension =
+                |axis: &String| dimensions.iter().find(|(name, _)| name == axis).map(|&(_, id)| id);
+            let axes: Vec<_> = variable.axes.iter().filter_map(dimension).collect(); // plan() has found them all
             let id = match variable.precision {
                 Precision::F32 => {
                     let id = file.add_variable::<f32>(&variable.name, &axes)?;
@@ -307,14 +302,23 @@ impl Maps {
 }
 
 impl Crs {
-    /// The attributes that CF (`crs_wkt`), GDAL and rioxarray (`spatial_ref`) look for.
+    /// The attributes that CF (`crs_wkt`), GDAL and rioxarray (`spatial_ref`) look for; GDAL wants well-known text there, so
+    /// a bare EPSG code is looked up. The shift to WGS 84 that such texts carry belongs to a transformation, not to the system:
+    /// with it readers would take the system for another than the EPSG's.
     fn describe(&self, file: &mut NcFileBuilder, id: VariableId) -> netcdf_writer::Result<()> {
         let code = self.epsg.map(|code| format!("EPSG:{code}"));
-        let reference = self.wkt.as_ref().or(code.as_ref());
+        let known = self.epsg.and_then(|code| u16::try_from(code).ok()).and_then(crs_definitions::from_code);
+        let known = known.map(|known| match known.wkt.split_once(",TOWGS84[") {
+            Some((before, shift)) => {
+                format!("{before}{}", shift.split_once(']').map_or("", |(_, after)| after))
+            }
+            None => known.wkt.into(),
+        });
+        let wkt = self.wkt.as_deref().or(known.as_deref());
         let names = [
             ("long_name", Some("coordinate reference system")),
-            ("crs_wkt", self.wkt.as_deref()),
-            ("spatial_ref", reference.map(String::as_str)),
+            ("crs_wkt", wkt),
+            ("spatial_ref", wkt.or(code.as_deref())),
             ("epsg_code", code.as_deref()),
         ];
         describe(file, id, names.into_iter().filter_map(|(name, value)| Some((name, value?))))?;
@@ -417,10 +421,12 @@ mod tests {
         assert_eq!((attribute("Conventions"), attribute("title")), ("CF-1.11".into(), "Überlauf".into()));
         assert_eq!(attribute("case"), dataset.case);
         let crs = &file.variable("crs").unwrap().attributes;
-        assert!(
-            crs.iter()
-                .any(|a| a.name == "spatial_ref" && a.value.as_string().as_deref() == Some("EPSG:31287"))
-        );
+        assert!(crs.iter().any(|a| {
+            a.name == "spatial_ref"
+                && a.value
+                    .as_string()
+                    .is_some_and(|wkt| wkt.contains("Austria Lambert") && !wkt.contains("TOWGS84"))
+        }));
         let of_bed = &file.variable("bed").unwrap().attributes;
         assert!(
             of_bed.iter().any(|a| a.name == "grid_mapping" && a.value.as_string().as_deref() == Some("crs"))
