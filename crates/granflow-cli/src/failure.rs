@@ -6,6 +6,8 @@ use std::path::Path;
 use std::process::ExitCode;
 
 use granflow::case::{CaseError, CaseErrorKind};
+use granflow::run::RunError;
+use granflow::setup::SetupError;
 use miette::{Diagnostic, LabeledSpan, NamedSource, SourceCode};
 
 /// Why a command did not do what it was asked.
@@ -72,6 +74,19 @@ impl From<CaseError> for Failure {
     fn from(error: CaseError) -> Self {
         let source = NamedSource::new(error.source_name(), error.text().to_owned());
         Self::Case(Box::new(CaseReport { source, error }))
+    }
+}
+
+impl From<RunError> for Failure {
+    fn from(error: RunError) -> Self {
+        match error {
+            RunError::Setup(SetupError::Case(error)) => error.into(),
+            RunError::Setup(error) => Self::File(error.to_string()),
+            RunError::Output(error) => Self::File(error.to_string()),
+            RunError::Computation { .. } => Self::Computation(error.to_string()),
+            RunError::Threads(message) => Self::usage(message, "try a smaller --threads"),
+            RunError::Resume { .. } => Self::File(error.to_string()),
+        }
     }
 }
 

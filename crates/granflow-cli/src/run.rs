@@ -4,11 +4,15 @@ use std::num::NonZeroUsize;
 use std::path::{Path, PathBuf};
 
 use granflow::case::Case;
+use granflow::output::summary::StopReason;
 use granflow::run::{self, Options};
 
-use crate::failure::Failure;
+use crate::failure::{Failure, print};
 use crate::interrupt;
 use crate::progress::{Progress, Status};
+
+/// A larger share of the mass in films is worth a warning.
+const FILM_SHARE: f64 = 0.005;
 
 /// What the command line says about a run.
 #[derive(Debug, Clone, Default)]
@@ -35,6 +39,7 @@ impl RunOptions {
 /// Computes a case and writes its results.
 pub fn run(case: &Case, options: &RunOptions) -> Result<(), Failure> {
     let stop = interrupt::listen()?;
+    let quiet = options.quiet;
     let mut progress = Progress::new(options.quiet);
     let end = case.time.end;
     let options = Options {
@@ -47,7 +52,28 @@ pub fn run(case: &Case, options: &RunOptions) -> Result<(), Failure> {
         let run::Status { time, step, wet_cells, max_speed } = *status;
         progress.show(&Status { time, end, step, wet_cells, max_speed });
     };
-    let finished = run::run(case, &options, stop, &mut report)?;
+    let finished = run::run(case, &options, stop, &mut report);
     progress.finish();
-    Ok(())
+    let finished = finished?;
+    let summary = &finished.summary;
+    let line = format!(
+        "{} at time {:.6}, step {}: {} (mass error {:.1e}, {:.2} s)",
+        summary.stop_reason,
+        summary.time,
+        summary.steps,
+        finished.directory.display(),
+        summary.mass_error,
+        summary.wall_seconds
+    );
+    if summary.film_share() > FILM_SHARE {
+        eprintln!(
+            "warning: {:.2} % of the mass is in films thinner than {:e}; a smaller scheme.film moves them",
+            100.0 * summary.film_share(),
+            case.scheme.film()
+        );
+    }
+    if summary.stop_reason == StopReason::Interrupted {
+        return Err(Failure::Interrupted(format!("{line}; --resume goes on")));
+    }
+    if quiet { Ok(()) } else { print(&format!("{line}\n")) }
 }

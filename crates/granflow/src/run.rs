@@ -231,7 +231,8 @@ where
 
     /// The frame and the ledger line after the present time.
     fn schedule(&mut self) {
-        let time = self.simulation.time();
+        let half = if self.simulation.is_adaptive() { 0.0 } else { 0.5 * self.simulation.wanted_step() };
+        let time = self.simulation.time() + half;
         if let Some(interval) = self.interval() {
             // Multiples of the interval, so that rounding does not add up.
             let after = |interval: f64| {
@@ -250,7 +251,8 @@ where
             if let Some(reason) = self.over(&time, end) {
                 break reason;
             }
-            let until = self.next_frame.min(end);
+            // A fixed step is never cut for a frame: the frame waits for the step.
+            let until = if self.simulation.is_adaptive() { self.next_frame.min(end) } else { end };
             if !self.simulation.wanted_step().is_finite() && !until.is_finite() {
                 break StopReason::AtRest;
             }
@@ -280,7 +282,8 @@ where
             case::Frames::Steps(every) => step % every == 0,
             _ => false,
         };
-        if by_steps || time >= self.next_frame {
+        let half = if self.simulation.is_adaptive() { 0.0 } else { 0.5 * self.simulation.wanted_step() };
+        if by_steps || time + half >= self.next_frame {
             self.frame()?;
             self.schedule();
             if self.joined.0.elapsed().as_secs_f64() > (JOIN * self.joined.1).max(CHECKPOINT) {
@@ -288,10 +291,10 @@ where
                 self.finish(StopReason::Interrupted)?.write_result(&self.work.options.command)?;
                 self.joined = (Instant::now(), begin.elapsed().as_secs_f64());
             }
-        } else if time >= self.next_line {
+        } else if time + half >= self.next_line {
             self.line()?;
             let interval = self.interval().unwrap_or(f64::INFINITY) / LINES;
-            while self.next_line <= time {
+            while self.next_line <= time + half {
                 self.next_line += interval;
             }
         }

@@ -303,11 +303,18 @@ impl<const D: usize, S: Scheme<D, f64>> Simulation<D, S> {
         }
     }
 
+    /// Does the step follow from the state?
+    pub fn is_adaptive(&self) -> bool {
+        matches!(self.step_size, StepSize::Courant(_))
+    }
+
     /// One step, not beyond time `until`; returns dt.
     pub fn advance(&mut self, until: f64) -> Result<f64, Failure> {
         let wanted = self.wanted_step();
         let left = until - self.time;
-        let (dt, time) = if wanted >= left { (left, until) } else { (wanted, self.time + wanted) };
+        // A rest of the way that only rounding left over is part of the last step.
+        let last = wanted * (1.0 + 1e-9) >= left;
+        let (dt, time) = if last { (left, until) } else { (wanted, self.time + wanted) };
         if !(time > self.time) || !dt.is_finite() {
             return Err(Failure::Collapsed { step: self.step, time: self.time, dt });
         }
