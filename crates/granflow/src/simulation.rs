@@ -340,6 +340,11 @@ impl<const D: usize, S: Scheme<D, f64>> Simulation<D, S> {
         if finite { Ok(dt) } else { Err(Failure::NotFinite { step: self.step, time: self.time }) }
     }
 
+    /// Let every tile be computed in the next step; changes no result, only what it costs.
+    pub fn wake_all(&mut self) {
+        self.quiet.fill(false);
+    }
+
     /// Number the tiles that something can happen in.
     fn wake(&mut self) {
         self.awake.clear();
