@@ -15,6 +15,12 @@ use crate::real::Real;
 use crate::scheme::{Parts, Watch};
 use ground::Bed;
 
+/// A depth below the smallest normal number is none: subnormal numbers round by as much as they hold.
+#[inline(always)]
+fn normal<R: Real>(h: R) -> R {
+    R::select(h.abs().lt(R::of(f64::MIN_POSITIVE)), R::zero(), h)
+}
+
 /// The unknowns of a cell.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Flow<const D: usize, R> {

@@ -4,7 +4,7 @@
 //! two dimensions on a plane by applying the fluxes along each axis, the (1, 2, 1)/4 depth per axis and static
 //! friction as the projection onto a disc.
 
-use super::Flow;
+use super::{Flow, normal};
 use super::flux::halves;
 use super::friction::{Coulomb, Friction};
 use super::ground::{Bed, Chute, Towards};
@@ -143,7 +143,7 @@ impl<const D: usize, R: Real> Scheme<D, R> for Kinetic {
             u: state.velocity(),
             beta: ground.beta,
             excess: pull.map(|f| -f),
-            smoothed: std::array::from_fn(|k| (lo[k] + (state.h + state.h) + hi[k]) * R::of(0.25)),
+            smoothed: std::array::from_fn(|k| ((lo[k] + hi[k]) + (state.h + state.h)) * R::of(0.25)),
         }
     }
 
@@ -178,13 +178,14 @@ impl<const D: usize, R: Real> Scheme<D, R> for Kinetic {
         };
         let mass = |flow: &Flow<D, R>, _: usize| flow.h;
         let momentum = |flow: &Flow<D, R>, k: usize| flow.q[k];
-        let moving_h = h - divergence(|f| f.moving, mass, 0);
-        let resting_h = h - divergence(|f| f.resting, mass, 0);
+        let moving_h = normal(h - divergence(|f| f.moving, mass, 0));
+        let resting_h = normal(h - divergence(|f| f.resting, mass, 0));
 
         // g(q) = tilt - R q/|q|
         let bound = self.friction.resistance(h, zero, ground.cos, ground.cos).holding;
-        let still = here.state.is_still();
+        // A momentum whose square underflows has no direction: it counts as none.
         let size = dot(q, q).sqrt();
+        let still = size.same(zero);
         let per = R::of(1.0) / R::select(still, R::of(1.0), size);
         let g: [R; D] = std::array::from_fn(|k| ground.tilt[k] - bound * (q[k] * per));
 

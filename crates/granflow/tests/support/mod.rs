@@ -1,0 +1,214 @@
+//! Builds the runs of the test suite: chutes, terrain from a function, both orders of the default scheme.
+#![allow(dead_code)]
+
+use granflow::grid::Grid;
+use granflow::savage_hutter::Flow;
+use granflow::savage_hutter::balanced::Balanced;
+use granflow::savage_hutter::friction::Coulomb;
+use granflow::savage_hutter::ground::{Bed, Chute, Terrain};
+use granflow::scheme::{Boundary, Scheme};
+use granflow::simulation::{Simulation, StepSize};
+use granflow::time::{EULER, SSP_RK2, Stages};
+
+/// Gravity of the runs in SI units.
+pub const GRAVITY: f64 = 9.81;
+
+/// A run of the default scheme on the bed `B`.
+pub type Run<const D: usize, B> = Simulation<D, Balanced<Coulomb, B>>;
+
+/// The two orders of the default scheme.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Order {
+    /// `balanced`.
+    First,
+    /// `balanced_2`.
+    Second,
+}
+
+pub const ORDERS: [Order; 2] = [Order::First, Order::Second];
+
+impl Order {
+    pub fn scheme<B>(self, mu: f64, film: f64) -> Balanced<Coulomb, B> {
+        match self {
+            Order::First => Balanced::first(Coulomb { mu }, film),
+            Order::Second => Balanced::second(Coulomb { mu }, film),
+        }
+    }
+    pub fn stages(self) -> Stages {
+        match self {
+            Order::First => EULER,
+            Order::Second => SSP_RK2,
+        }
+    }
+    /// The step of an ordinary run.
+    pub fn courant(self) -> StepSize {
+        match self {
+            Order::First => StepSize::Courant(0.9),
+            Order::Second => StepSize::Courant(0.45),
+        }
+    }
+    /// The largest step the scheme allows.
+    pub fn limit(self) -> StepSize {
+        match self {
+            Order::First => StepSize::Courant(1.0),
+            Order::Second => StepSize::Courant(0.5),
+        }
+    }
+}
+
+/// Square cells with one kind of boundary all round.
+pub fn grid<const D: usize>(cells: [usize; D], origin: [f64; D], size: f64, ends: Boundary) -> Grid<D> {
+    Grid { cells, origin, size: [size; D], boundary: [[ends; 2]; D] }
+}
+
+/// An interval cut into cells.
+pub fn line(from: f64, to: f64, cells: usize, ends: Boundary) -> Grid<1> {
+    grid([cells], [from], (to - from) / cells as f64, ends)
+}
+
+/// A plane whose sin(zeta) as a vector is `tilt`, with beta = `pressure` cos(zeta); gravity is 1.
+pub fn plane<const D: usize>(tilt: [f64; D], pressure: f64) -> Chute<D, f64> {
+    let cos = (1.0 - tilt.iter().map(|s| s * s).sum::<f64>()).sqrt();
+    Chute { tilt, beta: pressure * cos, cos, curvature: 0.0 }
+}
+
+/// A plane chute in SI units: slope angle `zeta` along x.
+pub fn incline<const D: usize>(zeta: f64) -> Chute<D, f64> {
+    let mut tilt = [0.0; D];
+    tilt[0] = GRAVITY * zeta.sin();
+    Chute { tilt, beta: GRAVITY * zeta.cos(), cos: GRAVITY * zeta.cos(), curvature: 0.0 }
+}
+
+/// A bed at one point: height, gradient, second derivatives.
+#[derive(Clone, Copy, Debug)]
+pub struct Surface<const D: usize> {
+    pub z: f64,
+    pub slope: [f64; D],
+    pub bent: [[f64; D]; D],
+}
+
+/// The grounds of a grid over `bed`, which answers `None` outside the data; `bend` by central differences of
+/// beta and c^2 as [`Terrain`] documents, 0 beside the edge of the data.
+pub fn terrain<const D: usize>(
+    grid: &Grid<D>,
+    bed: impl Fn([f64; D]) -> Option<Surface<D>>,
+) -> Vec<Terrain<D, f64>> {
+    let at = |centre: [f64; D]| match bed(centre) {
+        None => Terrain::outside(),
+        Some(Surface { z, slope, bent }) => {
+            let cos = 1.0 / (1.0 + slope.iter().map(|s| s * s).sum::<f64>()).sqrt();
+            Terrain {
+                level: GRAVITY * z,
+                slope,
+                cos,
+                fall: GRAVITY * cos,
+                curvature: bent.map(|row| row.map(|b| cos * b)),
+                bend: [0.0; D],
+            }
+        }
+    };
+    (0..grid.count())
+        .map(|number| {
+            let centre = grid.centre(grid.index(number));
+            let mut here = at(centre);
+            for axis in 0..D {
+                let dx = grid.size[axis];
+                let (mut lo, mut hi) = (centre, centre);
+                lo[axis] -= dx;
+                hi[axis] += dx;
+                let (lo, hi) = (at(lo), at(hi));
+                if here.cos > 0.0 && lo.cos > 0.0 && hi.cos > 0.0 {
+                    let tilt = 1.0 - (here.cos * here.slope[axis]).powi(2);
+                    let beta = Bed::<D, f64>::beta(&hi, axis) - Bed::<D, f64>::beta(&lo, axis);
+                    here.bend[axis] =
+                        beta / (4.0 * dx) - GRAVITY * tilt * (hi.cos.powi(2) - lo.cos.powi(2)) / (2.0 * dx);
+                }
+            }
+            here
+        })
+        .collect()
+}
+
+/// A run of the default scheme over given grounds, one for each cell.
+pub fn run<const D: usize, B: Bed<D, f64>>(
+    order: Order,
+    (mu, film): (f64, f64),
+    step: StepSize,
+    grid: Grid<D>,
+    grounds: &[B],
+    start: impl Fn([f64; D], &B) -> Flow<D, f64>,
+) -> Run<D, B> {
+    let number = |index: [usize; D]| index[0] + if D > 1 { index[D - 1] * grid.cells[0] } else { 0 };
+    Simulation::new(
+        order.scheme(mu, film),
+        grid,
+        order.stages(),
+        step,
+        |index| grounds[number(index)],
+        |index| start(grid.centre(index), &grounds[number(index)]),
+    )
+}
+
+/// A run on a plane.
+pub fn on_plane<const D: usize>(
+    order: Order,
+    friction: (f64, f64),
+    step: StepSize,
+    grid: Grid<D>,
+    ground: Chute<D, f64>,
+    start: impl Fn([f64; D]) -> Flow<D, f64>,
+) -> Run<D, Chute<D, f64>> {
+    run(order, friction, step, grid, &vec![ground; grid.count()], |x, _| start(x))
+}
+
+/// Steps without a last time.
+pub fn steps<const D: usize, S: Scheme<D, f64>>(run: &mut Simulation<D, S>, count: usize) {
+    for _ in 0..count {
+        run.advance(f64::INFINITY).expect("the step is finite");
+    }
+}
+
+/// Steps up to the time `end`.
+pub fn until<const D: usize, S: Scheme<D, f64>>(run: &mut Simulation<D, S>, end: f64) {
+    while run.time() < end {
+        run.advance(end).expect("the state is finite");
+    }
+}
+
+/// All states, x fastest.
+pub fn states<const D: usize, S: Scheme<D, f64, State = Flow<D, f64>>>(
+    run: &Simulation<D, S>,
+) -> Vec<Flow<D, f64>> {
+    run.collect(|cell| cell.state)
+}
+
+/// All depths, x fastest.
+pub fn depths<const D: usize, S: Scheme<D, f64, State = Flow<D, f64>>>(run: &Simulation<D, S>) -> Vec<f64> {
+    run.collect(|cell| cell.state.h)
+}
+
+/// Relative error of the ledger: volume now and booked as gone, against the volume at the start.
+pub fn lost<const D: usize, S: Scheme<D, f64>>(run: &Simulation<D, S>, before: f64) -> f64 {
+    (run.totals().volume + run.out().iter().sum::<f64>() - before) / before
+}
+
+/// Runs the work on one thread, without the traffic between threads that small grids do not repay.
+pub fn alone<T: Send>(work: impl FnOnce() -> T + Send) -> T {
+    rayon::ThreadPoolBuilder::new().num_threads(1).build().expect("a thread").install(work)
+}
+
+/// Numbers from 0 to 1 that look random and are the same everywhere (splitmix64, Vigna 2015).
+pub struct Dice(pub u64);
+
+impl Dice {
+    pub fn roll(&mut self) -> f64 {
+        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
+        let mut z = self.0;
+        z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+        z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
+        (z ^ (z >> 31)) as f64 / u64::MAX as f64
+    }
+    pub fn between(&mut self, from: f64, to: f64) -> f64 {
+        from + (to - from) * self.roll()
+    }
+}
