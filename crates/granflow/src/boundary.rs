@@ -4,11 +4,13 @@ use crate::field::Field;
 use crate::grid::{GHOSTS, Grid, Layout};
 use crate::scheme::{Boundary, Parts};
 
-/// Fill the ghost cells of `field`; `mirror(axis, value)` is the image across a wall.
+/// Fill the ghost cells of `field`; `beyond(value)` is what lies beyond an open end, `mirror(axis, value)` the image
+/// across a wall.
 pub fn fill<const D: usize, P: Parts<f64>>(
     field: &mut Field,
     grid: &Grid<D>,
     layout: &Layout,
+    beyond: impl Fn(P) -> P,
     mirror: impl Fn(usize, P) -> P,
 ) {
     for axis in 0..D {
@@ -26,8 +28,11 @@ pub fn fill<const D: usize, P: Parts<f64>>(
                 };
                 for j in 0..across {
                     let value: P = field.get(place(source, j));
-                    let value =
-                        if grid.boundary[axis][side] == Boundary::Wall { mirror(axis, value) } else { value };
+                    let value = match grid.boundary[axis][side] {
+                        Boundary::Open => beyond(value),
+                        Boundary::Wall => mirror(axis, value),
+                        Boundary::Periodic => value,
+                    };
                     field.set(place(target, j), value);
                 }
             }

@@ -111,6 +111,8 @@ pub trait Scheme<const D: usize, R: Real>: Send + Sync {
     fn mirror(&self, axis: usize, state: &Self::State) -> Self::State;
     /// The mirror image of a ground across a wall normal to `axis`.
     fn mirror_ground(&self, axis: usize, ground: &Self::Ground) -> Self::Ground;
+    /// The ground beyond an open end whose edge cell has this `ground`.
+    fn ground_beyond(&self, ground: &Self::Ground) -> Self::Ground;
     /// sum over axes of (fastest signal)/dx: the Courant condition is dt times this <= courant. \[1/time\]
     fn rate(&self, here: &Cell<Self::State, Self::Ground>, spacing: &Spacing<D, R>) -> R;
     /// keep * old + (1 - keep) * new, without undoing an exact stop of `new`.

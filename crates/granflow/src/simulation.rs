@@ -132,7 +132,13 @@ impl<const D: usize, S: Scheme<D, f64>> Simulation<D, S> {
             bed.set(Self::place_in(&layout, index), ground(index));
             now.set(Self::place_in(&layout, index), initial(index));
         }
-        boundary::fill(&mut bed, &grid, &layout, |axis, g| scheme.mirror_ground(axis, &g));
+        boundary::fill(
+            &mut bed,
+            &grid,
+            &layout,
+            |g| scheme.ground_beyond(&g),
+            |axis, g| scheme.mirror_ground(axis, &g),
+        );
         let (tiles, across) = cut(&layout, |i, j| {
             scheme.outside(&bed.get(layout.place(i, j)))
         });
@@ -301,7 +307,13 @@ impl<const D: usize, S: Scheme<D, f64>> Simulation<D, S> {
         let mut out = [0.0; 5];
         for (stage, &keep) in self.stages.iter().enumerate() {
             let last = stage + 1 == self.stages.len();
-            boundary::fill(&mut self.now, &self.grid, &self.layout, |axis, s| self.scheme.mirror(axis, &s));
+            boundary::fill(
+                &mut self.now,
+                &self.grid,
+                &self.layout,
+                |s| s,
+                |axis, s| self.scheme.mirror(axis, &s),
+            );
             let sweep = Sweep {
                 scheme: &self.scheme,
                 layout: self.layout,

@@ -47,6 +47,8 @@ pub trait Bed<const D: usize, R: Real>: Parts<R> {
     fn outside(&self) -> R::Mask;
     /// The mirror image across a wall normal to `axis`.
     fn mirror(self, axis: usize) -> Self;
+    /// What lies beyond an open end of the grid: a chute goes on, a terrain is not known there.
+    fn beyond(self) -> Self;
 }
 
 /// Central differences -(hi - lo)/(2 dx) of the rises towards both neighbours.
@@ -161,6 +163,9 @@ impl<const D: usize, R: Real> Bed<D, R> for Chute<D, R> {
     #[inline(always)]
     fn outside(&self) -> R::Mask {
         self.cos.lt(R::zero())
+    }
+    fn beyond(self) -> Self {
+        self
     }
     fn mirror(mut self, axis: usize) -> Self {
         self.tilt[axis] = -self.tilt[axis];
@@ -330,6 +335,9 @@ impl<const D: usize, R: Real> Bed<D, R> for Terrain<D, R> {
     #[inline(always)]
     fn outside(&self) -> R::Mask {
         self.cos.le(R::zero())
+    }
+    fn beyond(self) -> Self {
+        Terrain::outside()
     }
     fn mirror(mut self, axis: usize) -> Self {
         self.slope[axis] = -self.slope[axis];

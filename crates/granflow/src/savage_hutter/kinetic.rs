@@ -230,6 +230,10 @@ impl<const D: usize, R: Real> Scheme<D, R> for Kinetic {
     fn mirror_ground(&self, axis: usize, ground: &Chute<D, R>) -> Chute<D, R> {
         ground.mirror(axis)
     }
+    /// The chute goes on as it is.
+    fn ground_beyond(&self, ground: &Chute<D, R>) -> Chute<D, R> {
+        ground.beyond()
+    }
     #[inline(always)]
     fn rate(&self, here: &Cell<Flow<D, R>, Chute<D, R>>, spacing: &Spacing<D, R>) -> R {
         here.state.rate(&here.ground, spacing.per)
