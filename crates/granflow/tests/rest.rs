@@ -99,8 +99,8 @@ fn chute_pile(order: Order, tilt: [f64; 2], shape: Shape, s: f64, layer: bool) -
     let pile = move |x: [f64; 2]| {
         let away = shape.distance(x, [0.0; 2]);
         let fall = tilt[0] * x[0] + tilt[1] * x[1] - s * MU * ground.cos * away;
-        let h = 0.3 + fall / ground.beta;
-        Flow::still(if layer { h.max(0.1) } else { h.max(0.0) })
+        let h = 0.2 + fall / ground.beta;
+        Flow::still(if layer { h.max(0.07) } else { h.max(0.0) })
     };
     on_plane(order, (MU, FILM), order.courant(), sheet, ground, pile)
 }

@@ -231,8 +231,12 @@ impl<F: Friction, const D: usize, R: Real, B: Bed<D, R>> Scheme<D, R> for Balanc
                     let half = R::of(0.5);
                     let dh = half * limiter::central(state.h - a.h, b.h - state.h);
                     (hlo[axis], hhi[axis]) = ((state.h - dh).positive(), (state.h + dh).positive());
+                    // Beside a cell at rest the velocity has no slope: reconstructed down to 0 at a held cell's face,
+                    // it carried nothing there, and two cells pushed each other for ever (silo).
+                    let beside_rest = a.is_still() | b.is_still();
                     for k in 0..D {
-                        let mut du = half * limiter::central(u[k] - ua[k], ub[k] - u[k]);
+                        let du = half * limiter::central(u[k] - ua[k], ub[k] - u[k]);
+                        let mut du = R::select(beside_rest, zero, du);
                         if k == axis {
                             let most = Self::most_spread(state.h, dh.abs(), u[k].abs(), ground.beta(axis));
                             du = du.min(most).max(-most);
