@@ -81,10 +81,15 @@ fn rests<const D: usize, S: Scheme<D, f64, State = Flow<D, f64>>>(
     assert!(run.at_rest() && run.speed() == 0.0, "{name}: at rest");
 }
 
-/// Something moves within a few steps.
+/// Something moves in the first steps (and may come to rest again, a millionth lower).
 fn starts<const D: usize, S: Scheme<D, f64, State = Flow<D, f64>>>(name: &str, run: &mut Simulation<D, S>) {
-    alone(|| steps(run, 3));
-    assert!(run.counts().0 > 0 && run.speed() > 0.0, "{name} stays");
+    let moved = alone(|| {
+        (0..3).any(|_| {
+            steps(run, 1);
+            run.counts().0 > 0 && run.speed() > 0.0
+        })
+    });
+    assert!(moved, "{name} stays");
 }
 
 /// A pile of yield share `s` on the plane chute of this tilt; wet on dry, or on a layer.
