@@ -351,10 +351,18 @@ impl<F: Friction, const D: usize, R: Real, B: Bed<D, R>> Scheme<D, R> for Balanc
         let z = dt * law.drag * left / R::select(stops, R::of(1.0), new);
         let damped = R::of(2.0) / (R::of(1.0) + (R::of(1.0) + R::of(4.0) * R::select(stops, zero, z)).sqrt());
         let keep = left / safe * damped;
-        for m in &mut moved {
-            *m = R::select(stops, zero, *m * keep);
+        let mut slowed = moved.map(|m| R::select(stops, zero, m * keep));
+        if self.slopes {
+            // Along the new velocity friction is first order in time where the flow turns. Where a step takes at most
+            // a quarter of the momentum it acts along the old one, as in a forward-Euler step.
+            let taken = dt * depth * (law.dry + law.drag * (speed * speed));
+            let far = (taken * R::of(4.0)).lt(size) & !(still | stops | speed.le(zero));
+            let share = taken / R::select(far, speed, R::of(1.0));
+            for k in 0..D {
+                slowed[k] = R::select(far, moved[k] - share * old[k], slowed[k]);
+            }
         }
-        Flow { h: new, q: moved }
+        Flow { h: new, q: slowed }
     }
 
     fn mirror(&self, axis: usize, state: &Flow<D, R>) -> Flow<D, R> {
