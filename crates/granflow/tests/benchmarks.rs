@@ -36,78 +36,79 @@ const TABLE: &[Row] = &[
         name: "A Riemann, L1(h)",
         cells: [400, 800, 1600],
         error: riemann,
-        most: [0.026, 0.004],
+        most: [0.012, 0.0025],
         rate: [0.6, 0.9],
     },
     Row {
         name: "B cap, chute, rel. L1(h)",
         cells: [200, 400, 800],
         error: cap_on_chute,
-        most: [0.0035, 0.0012],
-        rate: [0.9, 0.9],
+        most: [0.0033, 8e-5],
+        rate: [0.95, 1.6],
     },
     Row {
         name: "B cap, terrain, rel. L1(h)",
         cells: [200, 400, 800],
         error: cap_on_terrain,
-        most: [0.0035, 0.0012],
-        rate: [0.9, 0.9],
+        most: [0.0033, 8e-5],
+        rate: [0.95, 1.6],
     },
+    // Its exact solution is that of a linearised lateral friction: at second order 0.5 % of the model remain.
     Row {
         name: "C cap 2-D, rel. L1(h)",
         cells: [60, 120, 240],
         error: cap_in_two_dimensions,
-        most: [0.03, 0.02],
-        rate: [f64::NEG_INFINITY; 2],
+        most: [0.015, 0.006],
+        rate: [0.8, f64::NEG_INFINITY],
     },
     Row {
         name: "D dam on slope, chute, L1(h)",
         cells: [250, 500, 1000],
         error: dam_on_chute,
-        most: [0.3, 0.1],
-        rate: [0.6, 0.6],
+        most: [0.2, 0.03],
+        rate: [0.6, 0.9],
     },
     Row {
         name: "D dam on slope, terrain, L1(h)",
         cells: [250, 500, 1000],
         error: dam_on_terrain,
-        most: [0.3, 0.1],
-        rate: [0.6, 0.6],
+        most: [0.2, 0.03],
+        rate: [0.6, 0.9],
     },
     Row {
         name: "E dam on flat, contour 0.01",
         cells: [400, 800, 1600],
         error: flat_dam,
-        most: [0.05, 0.02],
-        rate: [0.6, 0.6],
+        most: [0.11, 0.03],
+        rate: [0.6, 0.9],
     },
     Row {
         name: "I Ritter, L1(h)",
         cells: [200, 400, 800],
         error: ritter,
-        most: [0.1, 0.1],
-        rate: [0.6, 0.6],
+        most: [0.025, 0.003],
+        rate: [0.6, 0.9],
     },
     Row {
         name: "I Stoker, L1(h)",
         cells: [200, 400, 800],
         error: stoker,
-        most: [0.1, 0.1],
-        rate: [0.6, 0.9],
+        most: [0.025, 0.006],
+        rate: [0.6, 0.8],
     },
     Row {
         name: "I Thacker, terrain, rel. L1(h)",
         cells: [25, 50, 100],
         error: thacker,
-        most: [0.3, 0.1],
-        rate: [0.6, 0.6],
+        most: [0.03, 0.007],
+        rate: [0.75, 1.3],
     },
     Row {
         name: "J granular jump, L1(h)",
         cells: [200, 400, 800],
         error: jump,
-        most: [0.1, 0.1],
-        rate: [0.6, 0.9],
+        most: [0.007, 0.005],
+        rate: [0.6, 0.6],
     },
 ];
 
@@ -491,8 +492,9 @@ fn a_slab_on_terrain_stops_at_the_exact_time() {
                 while run.time() < 1.2 * exact.stopping_time() {
                     steps(&mut run, 1);
                     let v = run.watch([60, 60]).speed;
+                    let right = exact.velocity(run.time());
                     assert!(
-                        (v - exact.velocity(run.time())).abs() < 1e-10,
+                        (v - right).abs() < 1e-10 || ends_early(order, v, right, lost_per_step),
                         "{order:?} {angle}: {v} at {}",
                         run.time()
                     );
