@@ -6,6 +6,7 @@ use granflow::observe::Maps;
 use granflow::savage_hutter::Flow;
 use granflow::scheme::Boundary;
 use std::alloc::{GlobalAlloc, Layout, System};
+use std::sync::Barrier;
 use std::sync::atomic::{AtomicU64, Ordering};
 use support::{ORDERS, grid, on_plane, plane, steps};
 
@@ -36,6 +37,15 @@ fn steps_allocate_nothing_after_the_first() {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("threads");
         for order in ORDERS {
             let bytes = pool.install(|| {
+                if threads == 2 {
+                    // A thread sets up its own tools when it first takes work from another: let both do so.
+                    let (one, two) = (Barrier::new(2), Barrier::new(2));
+                    let back = || {
+                        one.wait();
+                        rayon::join(|| two.wait(), || two.wait());
+                    };
+                    rayon::join(|| one.wait(), back);
+                }
                 let sheet = grid([120, 90], [0.0; 2], 0.1, Boundary::Open);
                 let pile = |[x, y]: [f64; 2]| Flow::still((1.0 - (x - 6.0).hypot(y - 4.0)).max(0.0));
                 let mut run =

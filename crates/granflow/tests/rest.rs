@@ -24,6 +24,8 @@ enum Shape {
     Cone,
     /// A ridge whose sides fall in the direction of this angle, in degrees.
     Roof(f64),
+    /// The same with ends that fall along the ridge.
+    Hip(f64),
 }
 
 impl Shape {
@@ -37,6 +39,10 @@ impl Shape {
                 // |n|^2 in the dual metric I - s s^T
                 let dual = 1.0 - c2 * (cos * slope[0] + sin * slope[1]).powi(2);
                 (x * cos + y * sin).abs() / dual.sqrt()
+            }
+            Shape::Hip(angle) => {
+                let ends = Shape::Roof(angle + 90.0).distance([x, y], slope) - 0.2;
+                Shape::Roof(angle).distance([x, y], slope).max(ends)
             }
         }
     }
@@ -75,21 +81,31 @@ fn rests<const D: usize, S: Scheme<D, f64, State = Flow<D, f64>>>(
     assert!(run.at_rest() && run.speed() == 0.0, "{name}: at rest");
 }
 
-/// Something moves within a few steps.
+/// Something moves in the first steps (and may come to rest again, a millionth lower).
 fn starts<const D: usize, S: Scheme<D, f64, State = Flow<D, f64>>>(name: &str, run: &mut Simulation<D, S>) {
-    alone(|| steps(run, 3));
-    assert!(run.counts().0 > 0 && run.speed() > 0.0, "{name} stays");
+    let moved = alone(|| {
+        (0..3).any(|_| {
+            steps(run, 1);
+            run.counts().0 > 0 && run.speed() > 0.0
+        })
+    });
+    assert!(moved, "{name} stays");
 }
 
 /// A pile of yield share `s` on the plane chute of this tilt; wet on dry, or on a layer.
 fn chute_pile(order: Order, tilt: [f64; 2], shape: Shape, s: f64, layer: bool) -> Run<2, Chute<2, f64>> {
-    let sheet = grid([48, 45], [-2.4, -2.25], 0.1, Boundary::Open);
+    let sheet = grid([48, 45], [-1.2, -1.125], 0.05, Boundary::Open);
     let ground = plane(tilt, 0.4);
+    // An open end continues the layer, not the pile: on the incline roofs have ends.
+    let shape = match shape {
+        Shape::Roof(angle) if tilt != [0.0; 2] => Shape::Hip(angle),
+        other => other,
+    };
     let pile = move |x: [f64; 2]| {
         let away = shape.distance(x, [0.0; 2]);
         let fall = tilt[0] * x[0] + tilt[1] * x[1] - s * MU * ground.cos * away;
-        let h = 0.9 + fall / ground.beta;
-        Flow::still(if layer { h.max(0.3) } else { h.max(0.0) })
+        let h = 0.2 + fall / ground.beta;
+        Flow::still(if layer { h.max(0.07) } else { h.max(0.0) })
     };
     on_plane(order, (MU, FILM), order.courant(), sheet, ground, pile)
 }
@@ -98,7 +114,7 @@ fn chute_pile(order: Order, tilt: [f64; 2], shape: Shape, s: f64, layer: bool) -
 fn piles_on_planes_rest_at_the_yield_slope_and_start_beyond_it() {
     for order in ORDERS {
         for shape in SHAPES {
-            for tilt in [[0.0, 0.0], [0.2, 0.0], [0.0, -0.3], [0.15, 0.25]] {
+            for tilt in [[0.0, 0.0], [0.2, 0.0], [0.0, -0.25], [0.12, 0.18]] {
                 for layer in [false, true] {
                     let name = format!("{order:?} {shape:?} on {tilt:?}, layer {layer}");
                     let s =
@@ -214,14 +230,24 @@ fn piles_on_curved_beds_rest_with_nodata_beside_them() {
                     slope: [2e-3 * x, 2e-3 * y],
                     bent: [[2e-3, 0.0], [0.0, 2e-3]],
                 };
-                rests("bowl", &mut curved_pile(order, bowl, shape, hole), 10_000, false);
+                rests(
+                    &format!("{order:?} {shape:?} in a bowl, hole {hole}"),
+                    &mut curved_pile(order, bowl, shape, hole),
+                    10_000,
+                    false,
+                );
                 // A bed with a kink: a valley of two planes.
                 let valley = |[x, y]: [f64; 2]| Surface {
                     z: 500.0 + 0.3 * x.abs() + 0.1 * y,
                     slope: [0.3 * x.signum(), 0.1],
                     bent: [[0.0; 2]; 2],
                 };
-                rests("valley", &mut curved_pile(order, valley, shape, hole), 10_000, false);
+                rests(
+                    &format!("{order:?} {shape:?} in a valley, hole {hole}"),
+                    &mut curved_pile(order, valley, shape, hole),
+                    10_000,
+                    false,
+                );
             }
         }
     }

@@ -75,6 +75,8 @@ pub struct Edges<const D: usize, R: Real, B> {
     held: R::Mask,
     /// Dry, or a film, or outside: takes what comes, gives nothing.
     void: R::Mask,
+    /// q = 0.
+    still: R::Mask,
 }
 
 /// What passes a face.
@@ -153,16 +155,17 @@ impl<F: Friction, B: Copy> Balanced<F, B> {
         let lo = ground.rise(axis, Towards::Lo, &a.ground, h, a.state.h, dx);
         let hi = ground.rise(axis, Towards::Hi, &b.ground, h, b.state.h, dx);
         let (out_lo, out_hi) = (a.ground.outside(), b.ground.outside());
-        // Outside the data the surface goes on as it comes; from one side only, there is no difference.
         let zero = R::zero();
-        let lo = R::select(out_lo, R::select(out_hi, zero, -hi), lo);
-        let hi = R::select(out_hi, R::select(out_lo, zero, -lo), hi);
+        let (lo, hi) = (R::select(out_lo, zero, lo), R::select(out_hi, zero, hi));
         // A bare bed above the surface leans on nothing: it counts at most as the surface continued.
         let bare = |there: &Cell<Flow<D, R>, B>, rise: R, opposite: R| {
-            R::select(self.is_void(there.state.h, &there.ground), rise.min((-opposite).positive()), rise)
+            let above = self.is_void(there.state.h, &there.ground) & zero.lt(rise);
+            R::select(above, rise.min((-opposite).positive()), rise)
         };
-        let bare_lo = R::select(zero.lt(lo), bare(a, lo, hi), lo);
-        let bare_hi = R::select(zero.lt(hi), bare(b, hi, lo), hi);
+        let (bare_lo, bare_hi) = (bare(a, lo, hi), bare(b, hi, lo));
+        // Outside the data the surface goes on as it comes; from one side only, there is no difference.
+        let bare_lo = R::select(out_lo, -bare_hi, bare_lo);
+        let bare_hi = R::select(out_hi, -bare_lo, bare_hi);
         let weight = |there: &Cell<Flow<D, R>, B>, outside| {
             R::select(outside, zero, ground.weight(&there.ground, h, there.state.h))
         };
@@ -215,7 +218,8 @@ impl<F: Friction, const D: usize, R: Real, B: Bed<D, R>> Scheme<D, R> for Balanc
         let Stance { rise, weight, pull, holding } = self.stance(near);
         let void = self.is_void(state.h, &ground);
         let bound = holding * R::of(Self::SLACK) + ground.rounding(state.h, per[0]);
-        let mut held = ground.square(pull).le(bound * bound) & state.is_still() & !void;
+        let still = state.is_still();
+        let mut held = ground.square(pull).le(bound * bound) & still & !void;
         // A symmetric tower pulls nowhere, yet falls: bound the drop towards each neighbour too.
         for axis in 0..D {
             let drop = bound * near.spacing.size[axis] * ground.stretch(axis);
@@ -230,6 +234,7 @@ impl<F: Friction, const D: usize, R: Real, B: Bed<D, R>> Scheme<D, R> for Balanc
             bed: ground,
             held,
             void,
+            still,
         };
         for axis in 0..D {
             (edges.lo[axis].rise, edges.hi[axis].rise) = (rise[axis][0], rise[axis][1]);
@@ -242,7 +247,9 @@ impl<F: Friction, const D: usize, R: Real, B: Bed<D, R>> Scheme<D, R> for Balanc
                 for axis in 0..D {
                     let (a, b) = (&near.lo[axis].state, &near.hi[axis].state);
                     let (ua, ub) = (a.velocity(), b.velocity());
-                    // Beside a cell at rest or bare there is no smooth flow to be second order in.
+                    // Beside a cell at rest or bare there is no smooth flow to be second order in. A velocity
+                    // reconstructed down to 0 at a held cell's face carries nothing there, and two cells push each
+                    // other for ever (silo); thin cells beside bare ones trickle for ever (mountains).
                     let rests = |cell: &Cell<Flow<D, R>, B>| {
                         cell.state.is_still() | self.is_void(cell.state.h, &cell.ground)
                     };
@@ -366,10 +373,18 @@ impl<F: Friction, const D: usize, R: Real, B: Bed<D, R>> Scheme<D, R> for Balanc
         let z = dt * law.drag * left / R::select(stops, R::of(1.0), new);
         let damped = R::of(2.0) / (R::of(1.0) + (R::of(1.0) + R::of(4.0) * R::select(stops, zero, z)).sqrt());
         let keep = left / safe * damped;
-        for m in &mut moved {
-            *m = R::select(stops, zero, *m * keep);
+        let mut slowed = moved.map(|m| R::select(stops, zero, m * keep));
+        if self.slopes {
+            // Along the new velocity friction is first order in time where the flow turns. Where a step takes at most
+            // a quarter of the momentum it acts along the old one, as in a forward-Euler step.
+            let taken = dt * depth * (law.dry + law.drag * (speed * speed));
+            let far = (taken * R::of(4.0)).lt(size) & !(still | stops | speed.le(zero));
+            let share = taken / R::select(far, speed, R::of(1.0));
+            for k in 0..D {
+                slowed[k] = R::select(far, moved[k] - share * old[k], slowed[k]);
+            }
         }
-        Flow { h: new, q: moved }
+        Flow { h: new, q: slowed }
     }
 
     fn mirror(&self, axis: usize, state: &Flow<D, R>) -> Flow<D, R> {
@@ -394,9 +409,12 @@ impl<F: Friction, const D: usize, R: Real, B: Bed<D, R>> Scheme<D, R> for Balanc
             q: std::array::from_fn(|k| R::select(stopped, R::zero(), keep * old.q[k] + give * new.q[k])),
         }
     }
+    /// q = 0: what a step leaves unchanged, at rest, every later step leaves unchanged. Not only held cells: where
+    /// the surface bends, a cell may drop to one neighbour by more than friction holds and be stopped by it all the
+    /// same, because its pull is within the bound and held neighbours take nothing from it.
     #[inline(always)]
     fn rests(&self, edges: &Edges<D, R, B>) -> R::Mask {
-        edges.held | edges.void
+        edges.still
     }
     #[inline(always)]
     fn outside(&self, ground: &B) -> R::Mask {
