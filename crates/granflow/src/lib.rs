@@ -14,17 +14,17 @@
 //! does not exceed R. On terrain z = b(x, y) the same in SI units for the volume per plan area H \[m\] and the
 //! horizontal velocity w \[m/s\] (Bouchut & Westdickenberg 2004): [`savage_hutter::ground::Terrain`].
 //!
-//! # A silo breaks, and its grain comes to rest
+//! # A column of sand collapses and comes to rest
 //!
 //! ```
 //! use granflow::savage_hutter::{Flow, balanced::Balanced, friction::Coulomb, ground::Chute};
-//! use granflow::{grid::Grid, scheme::Boundary, simulation::{Simulation, StepSize}, time::EULER};
+//! use granflow::{grid::Grid, scheme::Boundary, simulation::{Simulation, StepSize}, time::SSP_RK2};
 //!
 //! let grid = Grid { cells: [240], origin: [-6.0], size: [0.05], boundary: [[Boundary::Open; 2]] };
 //! let flat = Chute { tilt: [0.0], beta: 0.4, cos: 1.0, curvature: 0.0 };
-//! let silo = |i| Flow::still(if grid.centre(i)[0].abs() < 1.0 { 2.3 } else { 0.3 });
-//! let scheme = Balanced::first(Coulomb { mu: 0.32 }, 1e-6);
-//! let mut run = Simulation::new(scheme, grid, EULER, StepSize::Courant(0.9), |_| flat, silo);
+//! let column = |i| Flow::still(if grid.centre(i)[0].abs() < 1.0 { 1.0 } else { 0.0 });
+//! let (scheme, step) = (Balanced::second(Coulomb { mu: 0.32 }, 1e-6), StepSize::Courant(0.45));
+//! let mut run = Simulation::new(scheme, grid, SSP_RK2, step, |_| flat, column);
 //! let before = run.totals().volume;
 //! while !run.at_rest() {
 //!     run.advance(f64::INFINITY)?;
