@@ -1,7 +1,7 @@
 //! `result.nc`: a NetCDF-4 file after the CF-1.11 conventions, written without holding the series in memory.
 //!
 //! The crate netcdf-writer builds the skeleton (dimensions, coordinates, attributes, variables with no data yet); the data
-//! are then appended block by block and the skeleton's object headers are told where they lie ([`super::hdf5`]).
+//! are then appended block by block and the skeleton's object headers are told where they lie (`output/hdf5.rs`).
 
 use super::frames::Frames;
 use super::hdf5::{Block, allocate};
