@@ -68,10 +68,10 @@ pub struct Case {
     /// The model.
     #[serde(default)]
     pub model: Model,
-    /// The grid of a scaled case; a case has [grid] or [terrain].
+    /// The grid of a scaled case; a case has `[grid]` or `[terrain]`.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub grid: Option<Grid>,
-    /// The mountain; a case has [grid] or [terrain].
+    /// The mountain; a case has `[grid]` or `[terrain]`.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub terrain: Option<Terrain>,
     /// The material.
