@@ -81,12 +81,14 @@ impl Scene {
     fn chute(case: &Case, grid: &case::Grid) -> Result<Scene, CaseError> {
         let (chute, material) = (case.chute()?, &case.material);
         let cells = grid.cells();
+        let gravity = case.gravity();
         let column = |i: usize| {
             let zeta = chute.zeta(grid.x.centre(i));
+            let cos = gravity * zeta.cos();
             Chute {
-                tilt: [zeta.sin(), 0.0],
-                beta: material.epsilon() * material.pressure_coefficient() * zeta.cos(),
-                cos: zeta.cos(),
+                tilt: [gravity * zeta.sin(), 0.0],
+                beta: material.epsilon() * material.pressure_coefficient() * cos,
+                cos,
                 curvature: material.eta() * chute.kappa(grid.x.face(i), grid.x.face(i + 1)),
             }
         };

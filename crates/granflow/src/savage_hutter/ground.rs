@@ -64,11 +64,11 @@ fn straight<const D: usize, R: Real>(lo: [R; D], hi: [R; D], per: [R; D]) -> [R;
 /// A cell outside the grid has cos = 0. psi = beta h per cell pair with P = beta h^2/2: a variable beta enters as h (beta_hi - beta_lo)/2.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Chute<const D: usize, R> {
-    /// sin(zeta), as a vector down the slope.
+    /// g sin(zeta), as a vector down the slope; g = 1 in the papers' scaling.
     pub tilt: [R; D],
-    /// epsilon k cos(zeta).
+    /// g epsilon k cos(zeta).
     pub beta: R,
-    /// cos(zeta).
+    /// g cos(zeta).
     pub cos: R,
     /// eta kappa: curvature of the chute times L/R; N = cos(zeta) + eta kappa u^2.
     pub curvature: R,
