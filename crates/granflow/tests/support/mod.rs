@@ -94,7 +94,7 @@ pub fn terrain<const D: usize>(
     bed: impl Fn([f64; D]) -> Option<Surface<D>>,
 ) -> Vec<Terrain<D, f64>> {
     let at = |centre: [f64; D]| match bed(centre) {
-        None => Terrain::outside(),
+        None => Terrain::nothing(),
         Some(Surface { z, slope, bent }) => {
             let cos = 1.0 / (1.0 + slope.iter().map(|s| s * s).sum::<f64>()).sqrt();
             Terrain {
