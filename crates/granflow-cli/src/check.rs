@@ -1,60 +1,110 @@
 //! `granflow check`: what a case would compute, and how large it is.
 
 use granflow::case::{Axis, Case, Frames, Grid, SchemeName, Side, Slope, Stepping};
+use granflow::savage_hutter::Flow;
+use granflow::savage_hutter::ground::Bed;
+use granflow::scheme::Scheme;
+use granflow::setup::{Scene, Visit};
+use granflow::simulation::Simulation;
+use granflow::terrain::Terrain;
 
 use crate::failure::{Failure, print};
+
+/// A fast avalanche \[m/s\].
+const FAST: f64 = 30.0;
 
 /// Bytes a cell takes while it is computed: thickness and momentum at two times and in one stage, ground and maps, 8
 /// bytes each.
 const BYTES_PER_CELL: usize = 8 * 16;
 
-/// What is known of a terrain case once its raster and releases are loaded.
-#[derive(Debug, Clone, PartialEq)]
-pub struct LoadedTerrain {
-    /// Cells along x and y.
-    pub cells: [usize; 2],
-    /// Size of a cell in metres.
-    pub cell: f64,
-    /// Cells without elevation.
-    pub nodata: usize,
-    /// Released volume in cubic metres.
-    pub volume: f64,
-    /// Cells that are released.
-    pub released: usize,
-    /// The largest a/dx + a/dy at the start, a = |w| + sqrt(2 beta H): the step is Courant number / rate.
-    pub rate: f64,
-    /// Everything else worth a line: N/(g c), steep cells, |F|/(mu g c).
-    pub notes: Vec<(&'static str, String)>,
+/// What the start of a run looks like.
+struct Start {
+    /// Largest sum over the axes of (|u| + sqrt(2 beta h))/dx: the Courant number of a step is dt times this.
+    rate: f64,
+    /// Largest pull as a share of what friction holds.
+    margin: f64,
+    /// Volume, or area in one dimension.
+    volume: f64,
+    /// Cells with a depth.
+    wet: usize,
+}
+
+/// Looks at the simulation before its first step.
+struct Look;
+
+impl Visit for Look {
+    type Output = Start;
+    fn visit<const D: usize, S>(self, mut simulation: Simulation<D, S>) -> Start
+    where
+        S: Scheme<D, f64, State = Flow<D, f64>>,
+        S::Ground: Bed<D, f64>,
+    {
+        let totals = simulation.totals();
+        let margin = simulation.margins().into_iter().fold(0.0, f64::max);
+        Start { rate: simulation.rate(), margin, volume: totals.volume, wet: totals.wet }
+    }
 }
 
 /// Prints the resolved case and the estimates.
 pub fn check(case: &Case) -> Result<(), Failure> {
+    let scene = Scene::load(case)?;
     let mut lines = describe(case);
-    if let Some(grid) = &case.grid {
-        lines.extend(grid_lines(case, grid)?);
+    let cells = match (&scene, &case.grid) {
+        (Scene::Mountain { terrain, .. }, _) => {
+            lines.extend(terrain_lines(terrain));
+            terrain.bed.values.len()
+        }
+        (Scene::Chute { cells, .. }, Some(grid)) => {
+            lines.extend(grid_lines(case, grid)?);
+            cells[0] * cells[1]
+        }
+        (Scene::Chute { .. }, None) => 0,
+    };
+    let start = scene.simulate(case, Look);
+    lines.push(("mass", format!("{:.6} in {} cells", start.volume, start.wet)));
+    let verdict = if start.margin > 1.0 { "it will start" } else { "it rests" };
+    lines.push(("pull", format!("at most {:.6} of what friction holds: {verdict}", start.margin)));
+    lines.push(("memory", memory(cells)));
+    lines.push(("steps", steps(case, start.rate)));
+    if let Stepping::Fixed(step) = case.scheme.stepping() {
+        let (courant, limit) = (step * start.rate, case.scheme.name.courant_limit());
+        let verdict = if courant <= limit { "in order" } else { "too large, the scheme is not stable there" };
+        lines.push(("Courant number", format!("{courant:.4} at the start (at most {limit}): {verdict}")));
     }
-    if let Some(terrain) = &case.terrain {
-        lines.push((
-            "terrain",
-            format!("{}, every file of the case is there", case.resolve(&terrain.dem).display()),
-        ));
-    }
-    lines.extend(case.notes().into_iter().map(|note| ("note", note)));
     let text: String = lines.iter().map(|(name, value)| format!("{name:16} {value}\n")).collect();
-    print(&format!("{text}\nThe case is in order. Resolved (angles in radians):\n\n{}", case.to_toml()))
+    let notes: String = case.notes().iter().map(|note| format!("note: {note}\n")).collect();
+    print(&format!("{text}{notes}\nThe case is in order. Resolved (angles in radians):\n\n{}", case.to_toml()))
 }
 
-/// The lines about a loaded terrain.
-pub fn terrain_lines(case: &Case, loaded: &LoadedTerrain) -> Vec<(&'static str, String)> {
-    let [nx, ny] = loaded.cells;
-    let mut lines = vec![
-        ("cells", format!("{nx} x {ny} of {} m, {} without elevation", loaded.cell, loaded.nodata)),
-        ("release", format!("{:.1} m3 in {} cells", loaded.volume, loaded.released)),
-        ("memory", memory(nx * ny)),
-        ("steps", steps(case, loaded.rate)),
-    ];
-    lines.extend(loaded.notes.iter().cloned());
-    lines
+/// The lines about a terrain: size, steepness, curvature under a fast mass.
+fn terrain_lines(terrain: &Terrain) -> Vec<(&'static str, String)> {
+    let bed = &terrain.bed;
+    let nodata = bed.values.iter().filter(|z| z.is_nan()).count();
+    let steep = terrain.steepness(60_f64.to_radians());
+    let (low, high) = bed.range().unwrap_or_default();
+    // Where the bed is convex, N = g c + c w^T (D^2 b) w vanishes at |w|^2 = g/|smallest eigenvalue of D^2 b|.
+    let convex = |h: &[f64; 3]| 0.5 * (h[0] + h[2]) - (0.25 * (h[0] - h[2]).powi(2) + h[1] * h[1]).sqrt();
+    let flies = terrain.hessian.iter().filter(|h| -convex(h) * FAST * FAST > 9.81).count();
+    let valid = (bed.values.len() - nodata).max(1);
+    vec![
+        (
+            "terrain",
+            format!("{} x {} cells of {} m, {nodata} without elevation", bed.columns, bed.rows, bed.cell),
+        ),
+        ("", format!("{low:.1} to {high:.1} m")),
+        (
+            "steep",
+            format!(
+                "{} cells above 60 deg, steepest {:.1} deg",
+                steep.steeper,
+                steep.max_slope.to_degrees()
+            ),
+        ),
+        (
+            "curvature",
+            format!("{:.2} % of the cells throw a mass of {FAST} m/s into the air (N < 0)", 100.0 * flies as f64 / valid as f64),
+        ),
+    ]
 }
 
 /// What the case says, with its defaults.
@@ -148,25 +198,6 @@ fn grid_lines(case: &Case, grid: &Grid) -> Result<Vec<(&'static str, String)>, F
     let wet = state.thickness.iter().filter(|h| **h > case.scheme.film()).count();
     let mass = state.thickness.iter().sum::<f64>() * area;
     lines.push(("thickness", format!("{low} to {high}, mass {mass:.6}, {wet} wet cells")));
-    let [nx, ny] = grid.cells();
-    lines.push(("cells", (nx * ny).to_string()));
-    lines.push(("memory", memory(nx * ny)));
-
-    let factor = case.gravity() * case.material.epsilon() * case.material.pressure_coefficient();
-    let rate = (0..nx * ny)
-        .filter(|cell| state.thickness[*cell] > 0.0)
-        .map(|cell| {
-            let wave = (2.0 * factor * slopes[cell % nx].cos() * state.thickness[cell]).sqrt();
-            let across = grid.y.as_ref().map_or(0.0, |y| (state.velocity_y[cell].abs() + wave) / y.width());
-            (state.velocity_x[cell].abs() + wave) / grid.x.width() + across
-        })
-        .fold(0.0, f64::max);
-    lines.push(("steps", steps(case, rate)));
-    if let Stepping::Fixed(step) = case.scheme.stepping() {
-        let (courant, limit) = (step * rate, case.scheme.name.courant_limit());
-        let verdict = if courant <= limit { "in order" } else { "too large, the scheme is not stable there" };
-        lines.push(("Courant number", format!("{courant:.4} at the start (at most {limit}): {verdict}")));
-    }
     Ok(lines)
 }
 

@@ -77,11 +77,19 @@ impl From<CaseError> for Failure {
     }
 }
 
+impl From<SetupError> for Failure {
+    fn from(error: SetupError) -> Self {
+        match error {
+            SetupError::Case(error) => error.into(),
+            SetupError::Raster(_) | SetupError::Release(_) => Self::File(error.to_string()),
+        }
+    }
+}
+
 impl From<RunError> for Failure {
     fn from(error: RunError) -> Self {
         match error {
-            RunError::Setup(SetupError::Case(error)) => error.into(),
-            RunError::Setup(error) => Self::File(error.to_string()),
+            RunError::Setup(error) => error.into(),
             RunError::Output(error) => Self::File(error.to_string()),
             RunError::Computation { .. } => Self::Computation(error.to_string()),
             RunError::Threads(message) => Self::usage(message, "try a smaller --threads"),

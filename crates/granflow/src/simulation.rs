@@ -293,6 +293,10 @@ impl<const D: usize, S: Scheme<D, f64>> Simulation<D, S> {
         }
     }
 
+    /// max over cells of [`Scheme::rate`]: the Courant number of a step dt is dt times this.
+    pub fn rate(&self) -> f64 {
+        self.tallies.iter().fold(0.0, |most, tally| tally.rate.max(most))
+    }
     /// The step that the Courant condition or the case asks for; infinite where nothing could move.
     pub fn wanted_step(&self) -> f64 {
         match self.step_size {
