@@ -114,10 +114,13 @@ fn pictures(papers: &[&'static Paper], runs: &Runs, folder: &Path) -> Vec<Pictur
             for drawing in printed.drawings {
                 let example = &EXAMPLES[printed.example as usize];
                 let number = printed.number.replace('.', "_");
-                let path =
-                    file(format!("{}_{number}_{}_{}", paper.figure.0, example.name, drawing.name()));
+                let path = file(format!("{}_{number}_{}_{}", paper.figure.0, example.name, drawing.name()));
                 let name = format!("{} {}", paper.figure.1, printed.number);
-                let caption = format!("{}: {}. Lengths in L, heights in H, times in √(L/g).", printed.caption, drawing.caption());
+                let caption = format!(
+                    "{}: {}. Lengths in L, heights in H, times in √(L/g).",
+                    printed.caption,
+                    drawing.caption()
+                );
                 let part = Part::Printed(paper.alias, printed.example, *drawing);
                 all.push(Picture { part, figure: Figure { name, caption, path } });
             }
@@ -130,9 +133,15 @@ fn pictures(papers: &[&'static Paper], runs: &Runs, folder: &Path) -> Vec<Pictur
         all.push(Picture { part: Part::Comparison(example.id), figure: Figure { name, caption, path } });
         for (scheme, run) in runs.of(example.id).iter().enumerate().filter(|(_, run)| run.failure.is_some()) {
             let name = format!("Failure: {}, {}", example.title, run.scheme.1);
-            let caption = format!("{}. The height at the first step with h < 0 and in the last finite state.", run.stopped());
+            let caption = format!(
+                "{}. The height at the first step with h < 0 and in the last finite state.",
+                run.stopped()
+            );
             let path = file(format!("failure_{}_{}", example.name, run.scheme.0));
-            all.push(Picture { part: Part::Broken(example.id, scheme), figure: Figure { name, caption, path } });
+            all.push(Picture {
+                part: Part::Broken(example.id, scheme),
+                figure: Figure { name, caption, path },
+            });
         }
     }
     all
@@ -140,7 +149,11 @@ fn pictures(papers: &[&'static Paper], runs: &Runs, folder: &Path) -> Vec<Pictur
 
 fn sections(papers: &[&'static Paper], runs: &Runs, pictures: &[Picture]) -> Vec<Section> {
     let figures = |wanted: &dyn Fn(&Part) -> bool| -> Vec<Figure> {
-        pictures.iter().filter(|picture| wanted(&picture.part)).map(|picture| picture.figure.clone()).collect()
+        pictures
+            .iter()
+            .filter(|picture| wanted(&picture.part))
+            .map(|picture| picture.figure.clone())
+            .collect()
     };
     let mut sections = vec![Section {
         title: "How to read this page".into(),
@@ -161,12 +174,17 @@ fn sections(papers: &[&'static Paper], runs: &Runs, pictures: &[Picture]) -> Vec
     for paper in papers {
         sections.push(Section { title: paper.title.into(), ..Section::default() });
         for example in &EXAMPLES {
-            let figures = figures(&|part| {
-                matches!(part, Part::Printed(alias, id, _) if *alias == paper.alias && *id == example.id)
-            });
+            let figures = figures(
+                &|part| matches!(part, Part::Printed(alias, id, _) if *alias == paper.alias && *id == example.id),
+            );
             if !figures.is_empty() {
                 let title = format!("{}: {}", paper.alias, example.title);
-                sections.push(Section { title, text: vec![example.about.into()], figures, ..Section::default() });
+                sections.push(Section {
+                    title,
+                    text: vec![example.about.into()],
+                    figures,
+                    ..Section::default()
+                });
             }
         }
     }
@@ -184,7 +202,12 @@ fn sections(papers: &[&'static Paper], runs: &Runs, pictures: &[Picture]) -> Vec
         .failed()
         .map(|run| {
             let why = run.failure.as_deref().unwrap_or_default();
-            format!("{} on \"{}\": {}. The run ends with: {why}.", run.scheme.1, run.example.title, run.stopped())
+            format!(
+                "{} on \"{}\": {}. The run ends with: {why}.",
+                run.scheme.1,
+                run.example.title,
+                run.stopped()
+            )
         })
         .collect();
     if !failed.is_empty() {
@@ -201,7 +224,15 @@ fn sections(papers: &[&'static Paper], runs: &Runs, pictures: &[Picture]) -> Vec
 
 /// All schemes on an example.
 fn comparison(runs: &[Computed]) -> Table {
-    let head = ["Scheme", "Mass change", "Smallest h", "max |u| at the end", "Total variation of h", "L1(h)", "Stopped"];
+    let head = [
+        "Scheme",
+        "Mass change",
+        "Smallest h",
+        "max |u| at the end",
+        "Total variation of h",
+        "L1(h)",
+        "Stopped",
+    ];
     let line = |run: &Computed| {
         vec![
             run.scheme.1.to_owned(),
@@ -226,16 +257,15 @@ fn short_table(rows: &[Row], figures: usize, index: &Path) -> String {
     names.dedup();
     let count = |name: &str, pass| rows.iter().filter(|row| row.name == name && row.pass() == pass).count();
     let width = names.iter().map(|name| name.chars().count()).max().unwrap_or(0);
-    let lines = names.iter().map(|name| format!("{name:width$}  {:6}  {:6}\n", count(name, true), count(name, false)));
+    let lines = names
+        .iter()
+        .map(|name| format!("{name:width$}  {:6}  {:6}\n", count(name, true), count(name, false)));
     let table: String = [format!("{:width$}  passed  failed\n", "")].into_iter().chain(lines).collect();
     let failing: String = (rows.iter().filter(|row| !row.pass()))
-        .map(|row| format!("FAIL {}, {}: {:?}, computed {}\n", row.name, row.quantity, row.expected, row.computed))
+        .map(|row| {
+            format!("FAIL {}, {}: {:?}, computed {}\n", row.name, row.quantity, row.expected, row.computed)
+        })
         .collect();
     let fail = rows.iter().filter(|row| !row.pass()).count();
-    format!(
-        "{table}{failing}{} of {} rows fail; {figures} figures: {}\n",
-        fail,
-        rows.len(),
-        index.display()
-    )
+    format!("{table}{failing}{} of {} rows fail; {figures} figures: {}\n", fail, rows.len(), index.display())
 }

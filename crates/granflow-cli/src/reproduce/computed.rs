@@ -120,24 +120,26 @@ impl Computed {
         frame.h.iter().zip(&self.x).map(|(h, x)| (h - floor) * x).sum::<f64>() / mass
     }
 
-    /// The exact solution at an instant after the start, where the example has one: heights and velocities.
-    pub fn exact(&self, time: f64) -> Option<Frame> {
-        let (start, step) = (self.start(), self.end().step);
-        match self.example.id {
-            Id::Constant | Id::ConstantInclined => Some(Frame { step, time, ..start.clone() }),
+    /// The exact solution at some places at the end, where the example has one.
+    pub fn exact(&self, places: &[f64]) -> Option<Frame> {
+        let (start, end) = (self.start(), self.end());
+        let (left, right) = (start.h[0], start.h[start.h.len() - 1]);
+        let flow: Box<dyn Fn(f64) -> (f64, f64)> = match self.example.id {
+            Id::Constant | Id::ConstantInclined => Box::new(move |_| (left, 0.0)),
             Id::Riemann => {
-                let sides = (start.h[0], start.h[start.h.len() - 1]);
-                let exact = Riemann::stoker(self.beta, sides.0, sides.1).ok()?;
-                let (h, u) = self.x.iter().map(|&x| exact.flow(x, time)).map(|flow| (flow.h, flow.u)).unzip();
-                Some(Frame { step, time, h, u })
+                let exact = Riemann::stoker(self.beta, left, right).ok()?;
+                let time = end.time;
+                Box::new(move |x| (exact.flow(x, time).h, exact.flow(x, time).u))
             }
-            _ => None,
-        }
+            _ => return None,
+        };
+        let (h, u) = places.iter().map(|&x| flow(x)).unzip();
+        Some(Frame { step: end.step, time: end.time, h, u })
     }
 
     /// Sum of |h - exact| dx at the end.
     pub fn l1(&self) -> Option<f64> {
-        let exact = self.exact(self.end().time)?;
+        let exact = self.exact(&self.x)?;
         Some(self.end().h.iter().zip(&exact.h).map(|(h, exact)| (h - exact).abs()).sum::<f64>() * self.dx)
     }
 

@@ -132,10 +132,13 @@ fn calm<'a>(axis: Axis<'a>, curves: &[Curve]) -> Axis<'a> {
 
 fn exact(run: &Computed, field: Field, path: &Path) -> Result<(), FigureError> {
     let end = run.end();
-    let exact = run.exact(end.time);
+    // Ten places a cell: the line shows corners and jumps as sharp as they are.
+    let fine: Vec<f64> =
+        run.x.iter().flat_map(|x| (0..10).map(move |k| x + run.dx * (f64::from(k) / 10.0 - 0.45))).collect();
+    let exact = run.exact(&fine);
     let line = exact.as_ref().map(|exact| Curve {
         name: "exact",
-        x: &run.x,
+        x: &fine,
         y: field.of(exact),
         style: Style::Solid,
         colour: Some([34, 34, 34]),
@@ -186,18 +189,15 @@ fn profiles(run: &Computed, field: Field, steps: &[u64], path: &Path) -> Result<
 
 /// The final heights of an example by all schemes that came to the end.
 pub fn comparison(runs: &[Computed], path: &Path) -> Result<(), FigureError> {
-    let curve = |k: usize, run: &'static str, of: &Computed| (k, run, of.end().h.clone(), of.x.clone());
-    let drawn: Vec<_> = (runs.iter().enumerate())
-        .filter(|(_, run)| run.failure.is_none())
-        .map(|(k, run)| curve(k, run.scheme.1, run))
-        .collect();
-    let curves: Vec<Curve> = (drawn.iter())
-        .map(|(k, name, h, x)| Curve {
-            name,
-            x,
-            y: h,
-            style: if *k < 5 { Style::Dashed } else { Style::Solid },
-            colour: Some(line_colour(*k)),
+    // The full lines lie below the dashed ones: curves that coincide can both be seen.
+    let drawn = [5..runs.len(), 0..5].into_iter().flatten().filter(|&k| runs[k].failure.is_none());
+    let curves: Vec<Curve> = drawn
+        .map(|k| Curve {
+            name: runs[k].scheme.1,
+            x: &runs[k].x,
+            y: &runs[k].end().h,
+            style: if k < 5 { Style::Dashed } else { Style::Solid },
+            colour: Some(line_colour(k)),
         })
         .collect();
     let subtitle = format!("final height by every scheme that came to step {}", runs[0].end().step);
@@ -220,8 +220,20 @@ pub fn failure(run: &Computed, path: &Path) -> Result<(), FigureError> {
     let zero = vec![0.0; run.x.len()];
     let curves = [
         Curve { name: "", x: &run.x, y: &zero, style: Style::Dashed, colour: Some([110, 110, 110]) },
-        Curve { name: &names[0], x: &run.x, y: &negative.h, style: Style::Solid, colour: Some(line_colour(0)) },
-        Curve { name: &names[1], x: &run.x, y: &run.end().h, style: Style::Points, colour: Some(line_colour(1)) },
+        Curve {
+            name: &names[0],
+            x: &run.x,
+            y: &negative.h,
+            style: Style::Solid,
+            colour: Some(line_colour(0)),
+        },
+        Curve {
+            name: &names[1],
+            x: &run.x,
+            y: &run.end().h,
+            style: Style::Points,
+            colour: Some(line_colour(1)),
+        },
     ];
     Profiles {
         title: run.example.title,

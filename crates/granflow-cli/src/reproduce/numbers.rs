@@ -22,9 +22,24 @@ struct Table<'a> {
 
 impl Table<'_> {
     /// A row named by what the paper of the page calls the place.
-    fn row(&mut self, place: (&str, &str), what: &str, expected: Expected, got: f64, measure: Measure, within: f64) {
+    fn row(
+        &mut self,
+        place: (&str, &str),
+        what: &str,
+        expected: Expected,
+        got: f64,
+        measure: Measure,
+        within: f64,
+    ) {
         let place = if self.paper.alias == "thesis" { place.1 } else { place.0 };
-        self.rows.push(Row::new(format!("{}: {place}", self.paper.alias), what, expected, got, measure, within));
+        self.rows.push(Row::new(
+            format!("{}: {place}", self.paper.alias),
+            what,
+            expected,
+            got,
+            measure,
+            within,
+        ));
     }
 }
 
@@ -45,7 +60,8 @@ fn quadrature_i3(h: f64, u: f64, beta: f64) -> f64 {
     let from = (-u / c).asin();
     let width = (PI / 2.0 - from) / f64::from(PIECES);
     let at = |k: u32| from + (f64::from(k) + 0.5) * width;
-    (0..PIECES).map(at).map(|p| (u + c * p.sin()).powi(2) * p.cos().powi(2)).sum::<f64>() * width * 2.0 / PI * h
+    (0..PIECES).map(at).map(|p| (u + c * p.sin()).powi(2) * p.cos().powi(2)).sum::<f64>() * width * 2.0 / PI
+        * h
 }
 
 /// Every number of a paper.
@@ -99,7 +115,14 @@ fn riemann(table: &mut Table, runs: &Runs) {
     let (h_m, u_m) = middle.map_or((f64::NAN, f64::NAN), |middle| (middle.h, middle.u));
     table.row(place, "h_m of the exact solution", Exact(0.726_920_446_187_286_5), h_m, Absolute, 1e-14);
     table.row(place, "u_m of the exact solution", Exact(0.186_452_574_416_656_75), u_m, Absolute, 1e-14);
-    table.row(place, "shock speed s of the exact solution", Exact(0.597_285_043_569_238_1), shock, Absolute, 1e-14);
+    table.row(
+        place,
+        "shock speed s of the exact solution",
+        Exact(0.597_285_043_569_238_1),
+        shock,
+        Absolute,
+        1e-14,
+    );
     let expected = [
         (0.090_145_3, 0.5008),
         (0.073_900_2, 1.0276),
@@ -110,7 +133,14 @@ fn riemann(table: &mut Table, runs: &Runs) {
     for (run, (l1, variation)) in runs.of(Id::Riemann).iter().zip(expected) {
         let what = |of: &str| format!("{of} after 5000 steps, {} ({INDEPENDENT})", run.scheme.1);
         table.row(place, &what("L1(h)"), Published(l1), run.l1().unwrap_or(f64::NAN), Absolute, 5e-8);
-        table.row(place, &what("total variation of h"), Published(variation), run.end().variation(), Absolute, 5e-5);
+        table.row(
+            place,
+            &what("total variation of h"),
+            Published(variation),
+            run.end().variation(),
+            Absolute,
+            5e-5,
+        );
     }
     let oscillation = runs.by(Id::Riemann, 4).end().variation() - runs.by(Id::Riemann, 5).end().variation();
     let what = "Verfahren 4 oscillates, 5 does not: total variation of 4 beyond that of 5";
@@ -128,15 +158,30 @@ fn silo(table: &mut Table, runs: &Runs) {
     for verfahren in [4, 5] {
         let run = runs.by(Id::Silo, verfahren);
         let what = |of: &str| format!("{of}, {}", run.scheme.1);
-        table.row(place, &what("stops: max |u| after 10000 steps"), Published(0.0), run.end().speed(), AtMost, 1e-15);
+        table.row(
+            place,
+            &what("stops: max |u| after 10000 steps"),
+            Published(0.0),
+            run.end().speed(),
+            AtMost,
+            1e-15,
+        );
         let skew = run.frames.iter().map(super::computed::Frame::asymmetry).fold(0.0, f64::max);
-        table.row(place, &what("spreads symmetrically: max |h(x) - h(-x)|"), Published(0.0), skew, AtMost, 1e-14);
+        table.row(
+            place,
+            &what("spreads symmetrically: max |h(x) - h(-x)|"),
+            Published(0.0),
+            skew,
+            AtMost,
+            1e-14,
+        );
     }
     for run in runs.of(Id::Silo) {
         let gain = 100.0 * run.mass_growth;
         match run.scheme.0 {
             "verfahren_5" => {
-                let what = format!("mass gained in 10000 steps in %, {} ({INDEPENDENT}; erratum 5)", run.scheme.1);
+                let what =
+                    format!("mass gained in 10000 steps in %, {} ({INDEPENDENT}; erratum 5)", run.scheme.1);
                 table.row(place, &what, Published(0.367), gain, Absolute, 5e-4);
             }
             name => {

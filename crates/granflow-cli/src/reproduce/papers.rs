@@ -85,12 +85,7 @@ pub const PAPERS: [Paper; 2] = [
                 "the silo's height at the start, after 1100 steps and at the end",
                 &[Profiles(Height, &[0, 1100, 10_000])],
             ),
-            printed(
-                "3",
-                Silo,
-                "the silo's height in time",
-                &[Perspective(Height), Above(Height)],
-            ),
+            printed("3", Silo, "the silo's height in time", &[Perspective(Height), Above(Height)]),
             printed(
                 "4",
                 InclinedSilo,
@@ -107,10 +102,7 @@ pub const PAPERS: [Paper; 2] = [
                 "6",
                 Sine,
                 "the sinusoidal heap spreads and gathers speed at a constant rate",
-                &[
-                    Profiles(Height, &[0, 500, 1000, 1500, 2000, 2500, 3000, 3500, 4000]),
-                    Perspective(Height),
-                ],
+                &[Profiles(Height, &[0, 500, 1000, 1500, 2000, 2500, 3000, 3500, 4000]), Perspective(Height)],
             ),
         ],
     },
@@ -192,10 +184,7 @@ pub const PAPERS: [Paper; 2] = [
                 "5.12",
                 Sine,
                 "example 6: a sinusoidal profile splits and gathers speed evenly",
-                &[
-                    Profiles(Height, &[0, 500, 1000, 1500, 2000, 2500, 3000, 3500, 4000]),
-                    Perspective(Height),
-                ],
+                &[Profiles(Height, &[0, 500, 1000, 1500, 2000, 2500, 3000, 3500, 4000]), Perspective(Height)],
             ),
         ],
     },
