@@ -147,9 +147,9 @@ impl Computed {
     pub fn stopped(&self) -> String {
         match (&self.failure, &self.negative) {
             (Some(_), Some(negative)) => {
-                format!("h < 0 at step {}, not finite after step {}", negative.step, self.end().step)
+                format!("h < 0 at step {}, last finite state at step {}", negative.step, self.end().step)
             }
-            (Some(_), None) => format!("not finite after step {}", self.end().step),
+            (Some(_), None) => format!("last finite state at step {}", self.end().step),
             _ if self.at_rest => "yes: proven at rest, u = 0".into(),
             _ if self.end().speed() == 0.0 => "yes: u = 0".into(),
             _ if self.end().speed() < STOPPED => format!("yes: max |u| < {STOPPED:e}"),
