@@ -53,13 +53,26 @@ pub struct Report<'a> {
     pub ledger: &'a [Entry],
 }
 
+/// A table of a page, texts only.
+#[derive(Debug, Clone, PartialEq, Eq, Default)]
+pub struct Table {
+    /// What stands above it.
+    pub title: String,
+    /// One text for each column.
+    pub head: Vec<String>,
+    /// The lines, each as long as the head.
+    pub lines: Vec<Vec<String>>,
+}
+
 /// A part of an index page.
-#[derive(Debug, Clone, PartialEq, Eq)]
+#[derive(Debug, Clone, PartialEq, Eq, Default)]
 pub struct Section {
     /// Heading.
     pub title: String,
     /// One paragraph each.
     pub text: Vec<String>,
+    /// The tables, after the text.
+    pub tables: Vec<Table>,
     /// The pictures, in order.
     pub figures: Vec<Figure>,
 }
@@ -138,6 +151,7 @@ pub fn write_index(path: &Path, title: &str, rows: &[Row], sections: &[Section])
             section {
                 h2 { (section.title) }
                 @for paragraph in &section.text { p { (paragraph) } }
+                @for table in &section.tables { (text_table(table)) }
                 @for figure in &section.figures { (inline(figure)?) }
             }
         }
@@ -191,6 +205,16 @@ fn rows_table(rows: &[Row]) -> Markup {
                     }
                 }
             }
+        } }
+    }
+}
+
+fn text_table(table: &Table) -> Markup {
+    html! {
+        p { strong { (table.title) } }
+        div.wide { table.rows {
+            thead { tr { @for head in &table.head { th scope="col" { (head) } } } }
+            tbody { @for line in &table.lines { tr { @for text in line { td { (text) } } } } }
         } }
     }
 }
@@ -315,10 +339,16 @@ mod tests {
         let sections = [Section {
             title: "Silo".into(),
             text: vec!["Text.".into()],
+            tables: vec![Table {
+                title: "Schemes".into(),
+                head: vec!["scheme".into()],
+                lines: vec![vec!["balanced <exact>".into()]],
+            }],
             figures: vec![figure(folder.path())],
         }];
         write_index(&path, "Reproduced", &[row(1.5), row(2.0)], &sections).unwrap();
         let page = fs::read_to_string(&path).unwrap();
+        assert!(page.contains("<td>balanced &lt;exact&gt;</td>"));
         assert!(
             page.contains("1 of 2 rows fail")
                 && page.contains("<tr class=\"fail\">")
@@ -334,7 +364,7 @@ mod tests {
         let folder = tempfile::tempdir().unwrap();
         let mut figure = figure(folder.path());
         figure.path = folder.path().join("absent.png");
-        let sections = [Section { title: String::new(), text: vec![], figures: vec![figure] }];
+        let sections = [Section { figures: vec![figure], ..Section::default() }];
         let message =
             write_index(&folder.path().join("index.html"), "x", &[], &sections).unwrap_err().to_string();
         assert!(message.contains("absent.png"), "{message}");
