@@ -22,7 +22,13 @@ pub trait Real:
     + Neg<Output = Self>
 {
     /// The answer of a comparison: `bool` for one number, a lane mask for several.
-    type Mask: Copy + Debug + Send + Sync + BitAnd<Output = Self::Mask> + BitOr<Output = Self::Mask> + Not<Output = Self::Mask>;
+    type Mask: Copy
+        + Debug
+        + Send
+        + Sync
+        + BitAnd<Output = Self::Mask>
+        + BitOr<Output = Self::Mask>
+        + Not<Output = Self::Mask>;
 
     /// The same constant in every place.
     fn of(value: f64) -> Self;
