@@ -1,6 +1,6 @@
 //! A mountain made from a formula, for `granflow new avalanche` and `granflow demo`.
 //!
-//! With s the distance from the top (north) and d = x - 80 sin(s/230) that from the valley's line, in metres,
+//! With s the distance from the top (south) and d = x - 80 sin(s/230) that from the valley's line, in metres,
 //! z = 900 + 600 exp(-s/600) + D(s) (1 - exp(-(d/w(s))^2)) + side ridges: a bowl, a gully that winds down an
 //! exponential slope, and a fan. Its inclination falls from 45 deg at the top below atan(0.4) = 22 deg at s = 550 m.
 
@@ -24,7 +24,7 @@ const OUTLINE: [[f64; 2]; 8] = [
     [-58.0, 158.0],
 ];
 
-/// Length of the mountain in metres, from the top (north) to the foot (south).
+/// Length of the mountain in metres, from the top (south) to the foot (north).
 fn length() -> f64 {
     CELLS[1] as f64 * CELL
 }
@@ -43,7 +43,7 @@ fn height(x: f64, s: f64) -> f64 {
     let valley = depth * (1.0 - (-(d / width).powi(2)).exp());
     // Ridges come down from both sides and end before the valley's floor.
     let beside = 1.0 - (-(d / (1.6 * width)).powi(4)).exp();
-    let ridges = 15.0 * (std::f64::consts::TAU * (s - 0.7 * d.abs()) / 230.0 + d.signum()).sin();
+    let ridges = 18.0 * (std::f64::consts::TAU * (s - 0.7 * d.abs()) / 230.0 + d.signum()).sin();
     let rough = 2.5 * (x / 19.0 + s / 47.0).sin() * (s / 27.0 - x / 61.0).sin();
     900.0 + 600.0 * (-s / 600.0).exp() + valley + beside * (ridges + rough)
 }
@@ -60,7 +60,7 @@ pub fn elevation() -> String {
             let x = centre(column) - 0.5 * CELLS[0] as f64 * CELL;
             let end = if column + 1 == CELLS[0] { '\n' } else { ' ' };
             // writing to a String does not fail
-            let _ = write!(text, "{:.2}{end}", height(x, centre(row)));
+            let _ = write!(text, "{:.2}{end}", height(x, length() - centre(row)));
         }
     }
     text
@@ -72,7 +72,7 @@ pub fn release() -> String {
     let points: Vec<String> = OUTLINE
         .iter()
         .chain(&OUTLINE[..1])
-        .map(|[x, s]| format!("[{:.2}, {:.2}]", middle + line(*s) + x, CORNER[1] + length() - s))
+        .map(|[x, s]| format!("[{:.2}, {:.2}]", middle + line(*s) + x, CORNER[1] + s))
         .collect();
     format!(
         "{{ \"type\": \"FeatureCollection\",\n  \"crs\": {{ \"type\": \"name\", \"properties\": {{ \"name\": \"urn:ogc:def:crs:EPSG::31287\" }} }},\n  \"features\": [\n    {{ \"type\": \"Feature\", \"properties\": {{ \"thickness\": 1.0 }},\n      \"geometry\": {{ \"type\": \"Polygon\", \"coordinates\": [[{}]] }} }}\n  ]\n}}\n",
@@ -85,13 +85,13 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_raster_is_whole_and_falls_southwards() {
+    fn the_raster_is_whole_and_falls_northwards() {
         let text = elevation();
         let rows: Vec<Vec<f64>> =
             text.lines().skip(6).map(|row| row.split(' ').map(|z| z.parse().unwrap()).collect()).collect();
         assert_eq!((rows.len(), rows[0].len()), (CELLS[1], CELLS[0]));
         let lowest = |row: &Vec<f64>| row.iter().copied().fold(f64::INFINITY, f64::min);
-        assert!(rows.windows(2).all(|pair| lowest(&pair[0]) > lowest(&pair[1])));
+        assert!(rows.windows(2).all(|pair| lowest(&pair[0]) < lowest(&pair[1])));
         assert!(serde_json::from_str::<serde_json::Value>(&release()).is_ok());
     }
 }

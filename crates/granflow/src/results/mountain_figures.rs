@@ -11,6 +11,9 @@ use std::sync::Arc;
 /// Colour of the release's outline, and of the edge of all that was reached.
 const RELEASE: [u8; 3] = [20, 20, 20];
 const EDGE: [u8; 3] = [0, 90, 160];
+const PATH: [u8; 3] = [0, 120, 80];
+/// Stands where a map shows nothing: so low that no interpolation brings it back.
+const NOWHERE: f64 = -1e12;
 
 /// What all maps of a run share.
 #[derive(Debug)]
@@ -54,19 +57,13 @@ impl<'a> Ground<'a> {
         }
         if edge {
             for (k, points) in self.footprint.iter().enumerate() {
-                let name = if k == 0 { "reached (peak thickness > 0.1 m)" } else { "" };
+                let name = if k == 0 { "reached" } else { "" };
                 outlines.push(Outline { name, points, closed: true, dashed: true, colour: Some(EDGE) });
             }
         }
         if let Some(path) = self.path.as_ref().filter(|_| along) {
             let points = &path.points;
-            outlines.push(Outline {
-                name: "path of the section",
-                points,
-                closed: false,
-                dashed: true,
-                colour: Some(EDGE),
-            });
+            outlines.push(Outline { name: "path", points, closed: false, dashed: true, colour: Some(PATH) });
         }
         outlines
     }
@@ -101,11 +98,13 @@ pub(super) fn mountain(story: &Story) -> Vec<Drawing<'_>> {
         let ground = ground.clone();
         // Films are fast and thin: a figure shows what a person would see.
         let thick = if name == "deposit" { map } else { peak };
-        let shown: Vec<f64> = map
-            .iter()
-            .zip(thick)
-            .map(|(&v, &h)| if h > REACHED && v.is_finite() { v } else { -1.0 })
-            .collect();
+        let layer = matches!(name, "peak_thickness" | "deposit");
+        let value = |(&v, &h): (&f64, &f64)| match v {
+            _ if layer => v,
+            v if h > REACHED && v.is_finite() => v,
+            _ => NOWHERE,
+        };
+        let shown: Vec<f64> = map.iter().zip(thick).map(value).collect();
         let most = shown.iter().fold(0.0_f64, |most, v| most.max(*v));
         let limit = top(shown.iter().copied().filter(|&v| v > 0.0));
         let clipped =
@@ -113,23 +112,21 @@ pub(super) fn mountain(story: &Story) -> Vec<Drawing<'_>> {
         let of = if name == "deposit" { "where it is" } else { "where the flow was" };
         let what = format!("{label}, largest {} {unit}{clipped}", short(most));
         let subtitle = format!("{what}; {}", story.subtitle);
-        let mut caption = format!("{what}; shown {of} thicker than {REACHED} m.");
+        let lines = "; dashed: the edge of all that was reached, and the path of the section";
+        let lines = if name == "deposit" { lines } else { "" };
+        let mut caption = format!("{what}; shown {of} thicker than {REACHED} m{lines}.");
         caption[..1].make_ascii_uppercase();
         drawings.push(Drawing::new(name, caption, move || {
             let quantity = Axis::new(label, unit).over(0.0, if limit > 0.0 { limit } else { 1.0 });
-            let overlay = Overlay {
-                values: &shown,
-                quantity,
-                threshold: if name == "arrival_time" { -0.5 } else { 0.0 },
-                colours,
-            };
+            let threshold = if layer { REACHED } else { -0.5 };
+            let overlay = Overlay { values: &shown, quantity, threshold, colours };
             Map {
                 title: &story.title,
                 subtitle: &subtitle,
                 extent: ground.extent,
                 bed: ground.bed,
                 overlay: Some(overlay),
-                outlines: &ground.outlines(name == "deposit", name == "peak_thickness"),
+                outlines: &ground.outlines(name == "deposit", name == "deposit"),
                 ..Default::default()
             }
             .draw()
