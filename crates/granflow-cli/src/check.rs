@@ -73,7 +73,10 @@ pub fn check(case: &Case) -> Result<(), Failure> {
     }
     let text: String = lines.iter().map(|(name, value)| format!("{name:16} {value}\n")).collect();
     let notes: String = case.notes().iter().map(|note| format!("note: {note}\n")).collect();
-    print(&format!("{text}{notes}\nThe case is in order. Resolved (angles in radians):\n\n{}", case.to_toml()))
+    print(&format!(
+        "{text}{notes}\nThe case is in order. Resolved (angles in radians):\n\n{}",
+        case.to_toml()
+    ))
 }
 
 /// The lines about a terrain: size, steepness, curvature under a fast mass.
@@ -94,15 +97,14 @@ fn terrain_lines(terrain: &Terrain) -> Vec<(&'static str, String)> {
         ("", format!("{low:.1} to {high:.1} m")),
         (
             "steep",
-            format!(
-                "{} cells above 60 deg, steepest {:.1} deg",
-                steep.steeper,
-                steep.max_slope.to_degrees()
-            ),
+            format!("{} cells above 60 deg, steepest {:.1} deg", steep.steeper, steep.max_slope.to_degrees()),
         ),
         (
             "curvature",
-            format!("{:.2} % of the cells throw a mass of {FAST} m/s into the air (N < 0)", 100.0 * flies as f64 / valid as f64),
+            format!(
+                "{:.2} % of the cells throw a mass of {FAST} m/s into the air (N < 0)",
+                100.0 * flies as f64 / valid as f64
+            ),
         ),
     ]
 }

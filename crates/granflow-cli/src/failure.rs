@@ -6,6 +6,7 @@ use std::path::Path;
 use std::process::ExitCode;
 
 use granflow::case::{CaseError, CaseErrorKind};
+use granflow::results::FilesError;
 use granflow::run::RunError;
 use granflow::setup::SetupError;
 use miette::{Diagnostic, LabeledSpan, NamedSource, SourceCode};
@@ -95,6 +96,12 @@ impl From<RunError> for Failure {
             RunError::Threads(message) => Self::usage(message, "try a smaller --threads"),
             RunError::Resume { .. } => Self::File(error.to_string()),
         }
+    }
+}
+
+impl From<FilesError> for Failure {
+    fn from(error: FilesError) -> Self {
+        Self::File(error.to_string())
     }
 }
 

@@ -1,33 +1,51 @@
-//! A small mountain made from a formula, for `granflow new avalanche` and `granflow demo`.
+//! A mountain made from a formula, for `granflow new avalanche` and `granflow demo`.
 //!
-//! A gully that winds down an exponential slope: with s the distance from the top, z = 900 + 900 exp(-s/900)
-//! + (x - 60 sin(s/300))^2/2000. Its inclination falls from 45 deg at the top below atan(0.4) = 22 deg at s = 825 m.
+//! With s the distance from the top (south) and d = x - 80 sin(s/230) that from the valley's line, in metres,
+//! z = 900 + 600 exp(-s/600) + D(s) (1 - exp(-(d/w(s))^2)) + side ridges: a bowl, a gully that winds down an
+//! exponential slope, and a fan. Its inclination falls from 45 deg at the top below atan(0.4) = 22 deg at s = 550 m.
 
 use std::fmt::Write;
 
 /// Size of a cell in metres.
-const CELL: f64 = 10.0;
+const CELL: f64 = 5.0;
 /// Cells along x and y.
-const CELLS: [usize; 2] = [70, 220];
+const CELLS: [usize; 2] = [200, 300];
 /// Low corner in the coordinates of Austria Lambert (EPSG:31287).
 const CORNER: [f64; 2] = [250_000.0, 350_000.0];
 /// The outline of the release: distance to the gully's line and from the top, in metres.
-const OUTLINE: [[f64; 2]; 6] =
-    [[-45.0, 150.0], [0.0, 130.0], [45.0, 150.0], [60.0, 230.0], [0.0, 290.0], [-60.0, 230.0]];
+const OUTLINE: [[f64; 2]; 8] = [
+    [-62.0, 92.0],
+    [-24.0, 62.0],
+    [30.0, 58.0],
+    [74.0, 96.0],
+    [66.0, 150.0],
+    [24.0, 196.0],
+    [-20.0, 200.0],
+    [-58.0, 158.0],
+];
 
-/// Length of the mountain in metres, from the top (north) to the foot (south).
+/// Length of the mountain in metres, from the top (south) to the foot (north).
 fn length() -> f64 {
     CELLS[1] as f64 * CELL
 }
 
 /// Where the gully runs, seen from the middle of the raster.
 fn line(s: f64) -> f64 {
-    60.0 * (s / 300.0).sin()
+    80.0 * (s / 230.0).sin()
 }
 
 /// Elevation in metres at x from the middle and s from the top.
 fn height(x: f64, s: f64) -> f64 {
-    900.0 + 900.0 * (-s / 900.0).exp() + (x - line(s)).powi(2) / 2000.0
+    let d = x - line(s);
+    // The gully is deepest half way down, wide and shallow on the fan.
+    let depth = (45.0 + 75.0 * (-((s - 520.0) / 330.0).powi(2)).exp()) * (1.0 - 0.6 * (-s / 120.0).exp());
+    let width = 75.0 + 130.0 / (1.0 + (-(s - 900.0) / 90.0).exp());
+    let valley = depth * (1.0 - (-(d / width).powi(2)).exp());
+    // Ridges come down from both sides and end before the valley's floor.
+    let beside = 1.0 - (-(d / (1.6 * width)).powi(4)).exp();
+    let ridges = 18.0 * (std::f64::consts::TAU * (s - 0.7 * d.abs()) / 230.0 + d.signum()).sin();
+    let rough = 2.5 * (x / 19.0 + s / 47.0).sin() * (s / 27.0 - x / 61.0).sin();
+    900.0 + 600.0 * (-s / 600.0).exp() + valley + beside * (ridges + rough)
 }
 
 /// The elevation as an ESRI ASCII grid, its first row in the north.
@@ -42,7 +60,7 @@ pub fn elevation() -> String {
             let x = centre(column) - 0.5 * CELLS[0] as f64 * CELL;
             let end = if column + 1 == CELLS[0] { '\n' } else { ' ' };
             // writing to a String does not fail
-            let _ = write!(text, "{:.3}{end}", height(x, centre(row)));
+            let _ = write!(text, "{:.2}{end}", height(x, length() - centre(row)));
         }
     }
     text
@@ -54,7 +72,7 @@ pub fn release() -> String {
     let points: Vec<String> = OUTLINE
         .iter()
         .chain(&OUTLINE[..1])
-        .map(|[x, s]| format!("[{:.2}, {:.2}]", middle + line(*s) + x, CORNER[1] + length() - s))
+        .map(|[x, s]| format!("[{:.2}, {:.2}]", middle + line(*s) + x, CORNER[1] + s))
         .collect();
     format!(
         "{{ \"type\": \"FeatureCollection\",\n  \"crs\": {{ \"type\": \"name\", \"properties\": {{ \"name\": \"urn:ogc:def:crs:EPSG::31287\" }} }},\n  \"features\": [\n    {{ \"type\": \"Feature\", \"properties\": {{ \"thickness\": 1.0 }},\n      \"geometry\": {{ \"type\": \"Polygon\", \"coordinates\": [[{}]] }} }}\n  ]\n}}\n",
@@ -67,13 +85,13 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_raster_is_whole_and_falls_southwards() {
+    fn the_raster_is_whole_and_falls_northwards() {
         let text = elevation();
         let rows: Vec<Vec<f64>> =
             text.lines().skip(6).map(|row| row.split(' ').map(|z| z.parse().unwrap()).collect()).collect();
         assert_eq!((rows.len(), rows[0].len()), (CELLS[1], CELLS[0]));
         let lowest = |row: &Vec<f64>| row.iter().copied().fold(f64::INFINITY, f64::min);
-        assert!(rows.windows(2).all(|pair| lowest(&pair[0]) > lowest(&pair[1])));
+        assert!(rows.windows(2).all(|pair| lowest(&pair[0]) < lowest(&pair[1])));
         assert!(serde_json::from_str::<serde_json::Value>(&release()).is_ok());
     }
 }

@@ -30,6 +30,9 @@ macro_rules! template {
     };
 }
 
+/// The commented case of an avalanche on the built-in mountain.
+pub const AVALANCHE: &str = include_str!("../../../cases/avalanche.toml");
+
 /// The cases to start from.
 pub const TEMPLATES: &[Template] = &[
     template!(

@@ -2,13 +2,25 @@
 
 use std::path::{Path, PathBuf};
 
-use crate::failure::Failure;
+use granflow::results::Story;
 
-/// Draws the figures of finished runs into `out`, or beside each.
+use crate::failure::{Failure, print};
+
+/// Draws the standard figures of finished runs into `out`, or into `figures/` beside each; of several results each has
+/// its own folder in `out`, called as the result's folder.
 pub fn plot(results: &[PathBuf], out: Option<&Path>) -> Result<(), Failure> {
-    let place = out.map_or_else(|| "beside each".to_owned(), |out| out.display().to_string());
-    Err(Failure::usage(
-        format!("this build draws no figures ({} results, {place})", results.len()),
-        "take a build with the figures",
-    ))
+    for (place, result) in results.iter().enumerate() {
+        let beside = result.parent().unwrap_or(Path::new(""));
+        let folder = match out {
+            None => beside.join("figures"),
+            Some(out) if results.len() == 1 => out.to_owned(),
+            Some(out) => {
+                out.join(beside.file_name().map_or_else(|| place.to_string().into(), ToOwned::to_owned))
+            }
+        };
+        let figures = Story::read(result)?.draw(&folder)?;
+        let lines: String = figures.iter().map(|figure| format!("{}\n", figure.path.display())).collect();
+        print(&lines)?;
+    }
+    Ok(())
 }

@@ -5,14 +5,12 @@ use std::path::{Path, PathBuf};
 
 use granflow::case::Case;
 use granflow::output::summary::StopReason;
+use granflow::results::{FILM_SHARE, Finished};
 use granflow::run::{self, Options};
 
 use crate::failure::{Failure, print};
 use crate::interrupt;
 use crate::progress::{Progress, Status};
-
-/// A larger share of the mass in films is worth a warning.
-const FILM_SHARE: f64 = 0.005;
 
 /// What the command line says about a run.
 #[derive(Debug, Clone, Default)]
@@ -36,10 +34,29 @@ impl RunOptions {
     }
 }
 
-/// Computes a case and writes its results.
+/// Computes a case, writes its results and says in one line how it ended.
 pub fn run(case: &Case, options: &RunOptions) -> Result<(), Failure> {
+    let finished = compute(case, options)?;
+    if options.quiet { Ok(()) } else { print(&format!("{}\n", line(&finished))) }
+}
+
+/// How a run ended, in one line.
+fn line(finished: &Finished) -> String {
+    let summary = &finished.summary;
+    format!(
+        "{} at time {:.6}, step {}: {} (mass error {:.1e}, {:.2} s)",
+        summary.stop_reason,
+        summary.time,
+        summary.steps,
+        finished.directory.display(),
+        summary.mass_error,
+        summary.wall_seconds
+    )
+}
+
+/// Computes a case and writes its results, also those of a run that was interrupted.
+pub fn compute(case: &Case, options: &RunOptions) -> Result<Finished, Failure> {
     let stop = interrupt::listen()?;
-    let quiet = options.quiet;
     let mut progress = Progress::new(options.quiet);
     let end = case.time.end;
     let options = Options {
@@ -55,16 +72,8 @@ pub fn run(case: &Case, options: &RunOptions) -> Result<(), Failure> {
     let finished = run::run(case, &options, stop, &mut report);
     progress.finish();
     let finished = finished?;
+    finished.write_files()?;
     let summary = &finished.summary;
-    let line = format!(
-        "{} at time {:.6}, step {}: {} (mass error {:.1e}, {:.2} s)",
-        summary.stop_reason,
-        summary.time,
-        summary.steps,
-        finished.directory.display(),
-        summary.mass_error,
-        summary.wall_seconds
-    );
     if summary.film_share() > FILM_SHARE {
         eprintln!(
             "warning: {:.2} % of the mass is in films thinner than {:e}; a smaller scheme.film moves them",
@@ -73,7 +82,7 @@ pub fn run(case: &Case, options: &RunOptions) -> Result<(), Failure> {
         );
     }
     if summary.stop_reason == StopReason::Interrupted {
-        return Err(Failure::Interrupted(format!("{line}; --resume goes on")));
+        return Err(Failure::Interrupted(format!("{}; --resume goes on", line(&finished))));
     }
-    if quiet { Ok(()) } else { print(&format!("{line}\n")) }
+    Ok(finished)
 }

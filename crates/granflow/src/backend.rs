@@ -145,7 +145,14 @@ impl<const D: usize, S: Scheme<D, f64>> Sweep<'_, D, S> {
     }
 
     /// Compute the tiles numbered in `awake`, write `to` (and `maps` in the last stage), leave a tally each.
-    pub fn run(&self, tiles: &[Tile], awake: &[u32], to: &mut Field, maps: Option<&mut Maps>, tallies: &mut [Tally]) {
+    pub fn run(
+        &self,
+        tiles: &[Tile],
+        awake: &[u32],
+        to: &mut Field,
+        maps: Option<&mut Maps>,
+        tallies: &mut [Tally],
+    ) {
         let mut parts = to.parts.iter_mut();
         let sheets: [Option<Sheet>; MOST_PARTS] =
             std::array::from_fn(|_| parts.next().map(|values| Sheet::new(values)));
@@ -287,13 +294,7 @@ impl<const D: usize, S: Scheme<D, f64>> Sweep<'_, D, S> {
     }
 
     /// Book what leaves a cell of the rim through its faces.
-    fn book(
-        &self,
-        tally: &mut Tally,
-        index: [usize; 2],
-        faces: &[Faces<S::Flux>; D],
-        place: usize,
-    ) {
+    fn book(&self, tally: &mut Tally, index: [usize; 2], faces: &[Faces<S::Flux>; D], place: usize) {
         let cells = [self.layout.columns, self.layout.rows];
         for axis in 0..D {
             let lambda = self.dt * self.spacing.per[axis];

@@ -22,7 +22,13 @@ pub trait Real:
     + Neg<Output = Self>
 {
     /// The answer of a comparison: `bool` for one number, a lane mask for several.
-    type Mask: Copy + Debug + Send + Sync + BitAnd<Output = Self::Mask> + BitOr<Output = Self::Mask> + Not<Output = Self::Mask>;
+    type Mask: Copy
+        + Debug
+        + Send
+        + Sync
+        + BitAnd<Output = Self::Mask>
+        + BitOr<Output = Self::Mask>
+        + Not<Output = Self::Mask>;
 
     /// The same constant in every place.
     fn of(value: f64) -> Self;
@@ -93,8 +99,11 @@ pub trait Real:
         for c in &P[1..] {
             p = p * z + Self::of(*c);
         }
-        let near = s + s * (z * p);
-        let value = Self::select(steep, Self::of(std::f64::consts::FRAC_PI_2) - (near + near), near);
+        let rest = s * (z * p);
+        // pi/2 - 2 (s + rest), the large terms first; the last constant is what f64 cuts off from pi/2
+        let far = (Self::of(std::f64::consts::FRAC_PI_2) - (s + s))
+            - ((rest + rest) - Self::of(6.123_233_995_736_766e-17));
+        let value = Self::select(steep, far, s + rest);
         Self::select(self.lt(Self::zero()), -value, value)
     }
 }

@@ -1,5 +1,19 @@
 //! What a run leaves: the series, the maps, the books, and the files made of them.
 
+mod animation;
+mod chute_figures;
+mod drawing;
+mod files;
+mod history_figure;
+mod mountain_figures;
+mod outlines;
+mod path;
+mod rasters;
+mod story;
+
+pub use files::{FILM_SHARE, FilesError};
+pub use story::Story;
+
 use crate::case::{Case, FileKind};
 use crate::output::frames::Frames;
 use crate::output::ledger::Entry;
@@ -28,9 +42,8 @@ impl Plane {
     /// The cells of a scene, from the lower corner, the size and the number of cells per axis.
     #[must_use]
     pub fn of(scene: &Scene, origin: &[f64], size: &[f64], cells: &[usize]) -> Plane {
-        let centres = |k: usize| {
-            (0..cells[k]).map(|i| origin[k] + (i as f64 + 0.5) * size[k]).collect::<Vec<f64>>()
-        };
+        let centres =
+            |k: usize| (0..cells[k]).map(|i| origin[k] + (i as f64 + 0.5) * size[k]).collect::<Vec<f64>>();
         let (bed, release) = match scene {
             Scene::Chute { initial, .. } => (None, initial.thickness.clone()),
             Scene::Mountain { terrain, release, .. } => {
@@ -82,9 +95,22 @@ pub struct Finished {
     /// peak_thickness, peak_speed, peak_pressure (terrain, kPa), arrival_time, stopping_time, deposit, yield_margin;
     /// x fastest, the first row in the south.
     pub maps: Vec<(&'static str, Vec<f64>)>,
+    /// A thinner layer is a film.
+    pub film: f64,
     /// The figures of the run.
     pub summary: Summary,
 }
+
+/// Names of the maps that a run may leave.
+const MAPS: [&str; 7] = [
+    "peak_thickness",
+    "peak_speed",
+    "peak_pressure",
+    "arrival_time",
+    "stopping_time",
+    "deposit",
+    "yield_margin",
+];
 
 /// Name, long name, and units in the papers' scaling and in SI.
 const QUANTITIES: [(&str, &str, &str, &str); 13] = [
@@ -139,7 +165,8 @@ impl Finished {
                 summary.add(&format!("{name}_max"), largest(values));
             }
         }
-        Finished { directory, files: case.files(), case: case.text(), plane, frames, ledger, maps, summary }
+        let (files, film) = (case.files(), case.scheme.film());
+        Finished { directory, files, case: case.text(), plane, frames, ledger, maps, film, summary }
     }
 
     /// A map by its name.
@@ -172,7 +199,14 @@ impl Finished {
                 axes.insert(0, "time".to_owned());
             }
             let units = if terrain { si } else { scaled }.to_owned();
-            Variable { name: name.to_owned(), long_name: long_name.to_owned(), units, axes, precision, values }
+            Variable {
+                name: name.to_owned(),
+                long_name: long_name.to_owned(),
+                units,
+                axes,
+                precision,
+                values,
+            }
         };
         let mut variables: Vec<Variable> = frames
             .fields()
@@ -220,11 +254,14 @@ impl Finished {
 fn runout(plane: &Plane, pressure: &[f64]) -> Option<(f64, f64)> {
     let bed = plane.bed()?;
     let columns = plane.x.len();
-    let top = (0..bed.len()).filter(|&k| plane.release[k] > 0.0).max_by(|&a, &b| bed[a].total_cmp(&bed[b]))?;
+    let top =
+        (0..bed.len()).filter(|&k| plane.release[k] > 0.0).max_by(|&a, &b| bed[a].total_cmp(&bed[b]))?;
     let from = |k: usize| {
-        let (dx, dy) = (plane.x[k % columns] - plane.x[top % columns], plane.y[k / columns] - plane.y[top / columns]);
+        let (dx, dy) =
+            (plane.x[k % columns] - plane.x[top % columns], plane.y[k / columns] - plane.y[top / columns]);
         dx.hypot(dy)
     };
-    let far = (0..bed.len()).filter(|&k| pressure[k] >= REACHED).max_by(|&a, &b| from(a).total_cmp(&from(b)))?;
+    let far =
+        (0..bed.len()).filter(|&k| pressure[k] >= REACHED).max_by(|&a, &b| from(a).total_cmp(&from(b)))?;
     (from(far) > 0.0).then(|| (from(far), bed[top] - bed[far]))
 }

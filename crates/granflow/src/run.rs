@@ -152,7 +152,12 @@ where
 {
     fn start<'a>(work: Work<'a>, mut simulation: Simulation<D, S>) -> Result<Run<'a, D, S>, RunError> {
         simulation.maps = Some(Maps::new(simulation.layout()));
-        let plane = Plane::of(work.scene, &simulation.grid().origin, &simulation.grid().size, simulation.grid().cells.as_slice());
+        let plane = Plane::of(
+            work.scene,
+            &simulation.grid().origin,
+            &simulation.grid().size,
+            simulation.grid().cells.as_slice(),
+        );
         let directory = &work.options.directory;
         let (frame_file, ledger_file) = (frames_in(directory), directory.join("mass.csv"));
         let initial = simulation.totals().volume;
@@ -494,7 +499,8 @@ fn restore<const D: usize, S>(simulation: &mut Simulation<D, S>, saved: &Checkpo
 where
     S: Scheme<D, f64, State = Flow<D, f64>>,
 {
-    let clock: Vec<f64> = (0..3 + 2 * EXITS.len()).map_while(|k| saved.scalar(&format!("clock_{k}"))).collect();
+    let clock: Vec<f64> =
+        (0..3 + 2 * EXITS.len()).map_while(|k| saved.scalar(&format!("clock_{k}"))).collect();
     let part = |k: usize| saved.array(&format!("state_{k}")).map(<[f64]>::to_vec);
     let parts: Vec<Vec<f64>> = (0..=D).map_while(part).collect();
     if !simulation.restore(&clock, Field { parts }) {

@@ -4,13 +4,13 @@ use crate::case::{self, Case, CaseError, SchemeName, Stepping};
 use crate::grid::Grid;
 use crate::raster::{Crs, Raster, RasterError};
 use crate::release::{self, ReleaseError};
+use crate::savage_hutter::Flow;
 use crate::savage_hutter::balanced::Balanced;
 use crate::savage_hutter::friction::{Cohesion, Coulomb, Friction, SamosAt, Voellmy};
 use crate::savage_hutter::ground::{self, Bed, Chute};
 use crate::savage_hutter::kinetic::{
     Kinetic, VERFAHREN_1, VERFAHREN_2, VERFAHREN_3, VERFAHREN_4, VERFAHREN_5,
 };
-use crate::savage_hutter::Flow;
 use crate::scheme::{Boundary, Scheme};
 use crate::simulation::{Simulation, StepSize};
 use crate::terrain::{Curvature, Terrain};
@@ -74,7 +74,9 @@ impl Scene {
         match (&case.grid, &case.terrain) {
             (Some(grid), _) => Ok(Self::chute(case, grid)?),
             (None, Some(terrain)) => Self::mountain(case, terrain),
-            (None, None) => Err(case.fault("grid", "neither a grid nor a terrain", "add [grid] or [terrain]").into()),
+            (None, None) => {
+                Err(case.fault("grid", "neither a grid nor a terrain", "add [grid] or [terrain]").into())
+            }
         }
     }
 
@@ -204,7 +206,12 @@ impl Scene {
         }
     }
 
-    fn on_chute<const D: usize, V: Visit, F: Friction>(&self, case: &Case, friction: F, work: V) -> V::Output {
+    fn on_chute<const D: usize, V: Visit, F: Friction>(
+        &self,
+        case: &Case,
+        friction: F,
+        work: V,
+    ) -> V::Output {
         let (Scene::Chute { cells, grounds, initial }, Some(description)) = (self, &case.grid) else {
             unreachable!("a chute comes from a case with a grid")
         };
@@ -235,7 +242,10 @@ impl Scene {
         };
         let step = step_size(case);
         let film = case.scheme.film();
-        let kinetic = |published: Kinetic| Kinetic { friction: Coulomb { mu: case.material.friction.mu() }, ..published };
+        let kinetic = |published: Kinetic| Kinetic {
+            friction: Coulomb { mu: case.material.friction.mu() },
+            ..published
+        };
         let published = match case.scheme.name {
             SchemeName::Balanced => {
                 return work.visit(Simulation::new(

@@ -53,7 +53,9 @@ impl Sum {
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 pub enum Failure {
     /// A state became infinite or not a number.
-    #[error("the state is not finite after step {step}, time {time}: take a smaller step, or a positive scheme (verfahren_1, balanced)")]
+    #[error(
+        "the state is not finite after step {step}, time {time}: take a smaller step, or a positive scheme (verfahren_1, balanced)"
+    )]
     NotFinite {
         /// Steps done.
         step: u64,
@@ -133,9 +135,7 @@ impl<const D: usize, S: Scheme<D, f64>> Simulation<D, S> {
             now.set(Self::place_in(&layout, index), initial(index));
         }
         boundary::fill(&mut bed, &grid, &layout, |axis, g| scheme.mirror_ground(axis, &g));
-        let (tiles, across) = cut(&layout, |i, j| {
-            scheme.outside(&bed.get(layout.place(i, j)))
-        });
+        let (tiles, across) = cut(&layout, |i, j| scheme.outside(&bed.get(layout.place(i, j))));
         let mut simulation = Simulation {
             spacing: Spacing::new(grid.size),
             next: now.clone(),
@@ -439,12 +439,11 @@ fn cut(layout: &Layout, outside: impl Fn(isize, isize) -> bool) -> (Vec<Tile>, u
     for rows in ends(layout.rows, TILE[1]) {
         for columns in ends(layout.columns, TILE[0]) {
             let range = |[from, to]: [usize; 2]| from as isize - 1..to as isize + 1;
-            let ends = columns[0] == 0
-                || columns[1] == layout.columns
-                || rows[0] == 0
-                || rows[1] == layout.rows;
+            let ends =
+                columns[0] == 0 || columns[1] == layout.columns || rows[0] == 0 || rows[1] == layout.rows;
             let rim = ends
-                || range(rows).any(|j| range(columns).any(|i| outside(i, if layout.rows > 1 { j } else { 0 })));
+                || range(rows)
+                    .any(|j| range(columns).any(|i| outside(i, if layout.rows > 1 { j } else { 0 })));
             tiles.push(Tile { columns, rows, rim });
         }
     }

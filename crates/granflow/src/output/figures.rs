@@ -51,6 +51,7 @@ pub use history::{History, HistoryPanel};
 pub use map::{Extent, Map, Overlay};
 pub use section::Section;
 pub use surface::Surface;
+pub use ticks::short;
 
 /// Why a figure could not be drawn or written.
 #[derive(Debug, thiserror::Error)]

@@ -4,10 +4,10 @@
 //! so that it stops and never reverses. The rules and what they were measured against:
 //! `docs/decisions/0002-rest.md`.
 
-use super::{Flow, normal};
 use super::flux::{Half, halves};
 use super::friction::Friction;
 use super::ground::{Bed, Towards};
+use super::{Flow, normal};
 use crate::limiter;
 use crate::real::Real;
 use crate::scheme::{Cell, Faces, Near, Scheme, Side, Spacing, Watch};
@@ -228,14 +228,8 @@ impl<F: Friction, const D: usize, R: Real, B: Bed<D, R>> Scheme<D, R> for Balanc
             }
         }
 
-        let mut edges = Edges {
-            lo: [Edge::closed(); D],
-            hi: [Edge::closed(); D],
-            bed: ground,
-            held,
-            void,
-            still,
-        };
+        let mut edges =
+            Edges { lo: [Edge::closed(); D], hi: [Edge::closed(); D], bed: ground, held, void, still };
         for axis in 0..D {
             (edges.lo[axis].rise, edges.hi[axis].rise) = (rise[axis][0], rise[axis][1]);
             (edges.lo[axis].weight, edges.hi[axis].weight) = (weight[axis][0], weight[axis][1]);
@@ -292,8 +286,7 @@ impl<F: Friction, const D: usize, R: Real, B: Bed<D, R>> Scheme<D, R> for Balanc
         let gives_a = !(left.held | left.void);
         let gives_b = !(right.held | right.void);
         let either = left.held | right.held;
-        let mut flux =
-            Flux { mass: zero, left: Seen::of(a, either), right: Seen::of(b, either) };
+        let mut flux = Flux { mass: zero, left: Seen::of(a, either), right: Seen::of(b, either) };
         if R::any(gives_a | gives_b) {
             let (half_a, half_b) = (a.half.only(gives_a), b.half.only(gives_b));
             // Into a held cell goes only what is carried there, the rest of the density is reflected.

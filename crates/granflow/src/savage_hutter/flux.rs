@@ -34,10 +34,7 @@ impl<R: Real> Half<R> {
     /// The half where `mask` holds, nothing elsewhere.
     #[inline(always)]
     pub fn only(self, mask: R::Mask) -> Self {
-        Half {
-            mass: R::select(mask, self.mass, R::zero()),
-            push: R::select(mask, self.push, R::zero()),
-        }
+        Half { mass: R::select(mask, self.mass, R::zero()), push: R::select(mask, self.push, R::zero()) }
     }
 }
 
@@ -61,10 +58,8 @@ pub fn halves<R: Real>(h: R, u: R, beta: R) -> (Half<R>, Half<R>) {
     let third = (square * r) * R::of(1.0 / 3.0);
     let fourth = (x - a * r * (one - (a * a + a * a))) * R::of(0.125);
     let scale = R::of(FRAC_2_PI) * h;
-    let half = |m0: R, m1: R, m2: R| Half {
-        mass: scale * (u * m0 + c * m1),
-        push: scale * (c * (u * m1 + c * m2)),
-    };
+    let half =
+        |m0: R, m1: R, m2: R| Half { mass: scale * (u * m0 + c * m1), push: scale * (c * (u * m1 + c * m2)) };
     let (m0, m2) = (R::of(FRAC_PI_4), R::of(PI / 16.0));
     (half(m0 + area, -third, m2 + fourth), half(m0 - area, third, m2 - fourth))
 }
@@ -77,11 +72,8 @@ mod tests {
         // xi = u + c sin t removes the root's end points; midpoint rule on the half, cut at xi = 0.
         let c = (2.0 * beta * h).sqrt();
         let cut = (-u / c).clamp(-1.0, 1.0).asin();
-        let (from, to) = if right {
-            (cut, std::f64::consts::FRAC_PI_2)
-        } else {
-            (-std::f64::consts::FRAC_PI_2, cut)
-        };
+        let (from, to) =
+            if right { (cut, std::f64::consts::FRAC_PI_2) } else { (-std::f64::consts::FRAC_PI_2, cut) };
         let n = 20_000;
         let dt = (to - from) / f64::from(n);
         let (mut mass, mut momentum) = (0.0, 0.0);
@@ -97,7 +89,9 @@ mod tests {
 
     #[test]
     fn halves_are_the_integrals() {
-        for (h, u, beta) in [(0.7, 0.3, 0.4), (1.3, -0.9, 0.4), (0.2, 2.0, 0.4), (2.3, 0.0, 0.5), (1.0, -3.0, 0.1)] {
+        for (h, u, beta) in
+            [(0.7, 0.3, 0.4), (1.3, -0.9, 0.4), (0.2, 2.0, 0.4), (2.3, 0.0, 0.5), (1.0, -3.0, 0.1)]
+        {
             let (left, right) = halves::<f64>(h, u, beta);
             for (half, is_right) in [(left, false), (right, true)] {
                 let (mass, momentum) = by_quadrature(h, u, beta, is_right);

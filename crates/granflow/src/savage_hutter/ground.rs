@@ -82,12 +82,7 @@ impl<const D: usize, R: Real> Parts<R> for Chute<D, R> {
         for (axis, tilt) in tilt.iter_mut().enumerate() {
             *tilt = part(axis);
         }
-        Chute {
-            tilt,
-            beta: part(D),
-            cos: part(D + 1),
-            curvature: part(D + 2),
-        }
+        Chute { tilt, beta: part(D), cos: part(D + 1), curvature: part(D + 2) }
     }
     #[inline(always)]
     fn scatter(self, mut put: impl FnMut(usize, R)) {
@@ -261,8 +256,7 @@ impl<const D: usize, R: Real> Parts<R> for Terrain<D, R> {
             let (i, j) = if i < j { (i, j) } else { (j, i) };
             3 + 2 * D + i * D + j - i * (i + 1) / 2
         };
-        let mut cell =
-            Terrain { level: part(0), cos: part(1), fall: part(2), ..Terrain::nothing() };
+        let mut cell = Terrain { level: part(0), cos: part(1), fall: part(2), ..Terrain::nothing() };
         for i in 0..D {
             cell.slope[i] = part(3 + i);
             cell.bend[i] = part(3 + D + i);

@@ -4,10 +4,10 @@
 //! two dimensions on a plane by applying the fluxes along each axis, the (1, 2, 1)/4 depth per axis and static
 //! friction as the projection onto a disc.
 
-use super::{Flow, normal};
 use super::flux::halves;
 use super::friction::{Coulomb, Friction};
 use super::ground::{Bed, Chute, Towards};
+use super::{Flow, normal};
 use crate::real::{Real, dot};
 use crate::scheme::{Cell, Faces, Near, Scheme, Side, Spacing, Watch};
 
@@ -168,14 +168,15 @@ impl<const D: usize, R: Real> Scheme<D, R> for Kinetic {
         let ground = &here.ground;
         let lambda = spacing.per.map(|per| dt * per);
         let zero = R::zero();
-        let divergence = |pick: fn(&Flux<D, R>) -> Flow<D, R>, part: fn(&Flow<D, R>, usize) -> R, k: usize| {
-            let mut sum = zero;
-            for axis in 0..D {
-                let (lo, hi) = (pick(&faces[axis].lo), pick(&faces[axis].hi));
-                sum = sum + lambda[axis] * (part(&hi, k) - part(&lo, k));
-            }
-            sum
-        };
+        let divergence =
+            |pick: fn(&Flux<D, R>) -> Flow<D, R>, part: fn(&Flow<D, R>, usize) -> R, k: usize| {
+                let mut sum = zero;
+                for axis in 0..D {
+                    let (lo, hi) = (pick(&faces[axis].lo), pick(&faces[axis].hi));
+                    sum = sum + lambda[axis] * (part(&hi, k) - part(&lo, k));
+                }
+                sum
+            };
         let mass = |flow: &Flow<D, R>, _: usize| flow.h;
         let momentum = |flow: &Flow<D, R>, k: usize| flow.q[k];
         let moving_h = normal(h - divergence(|f| f.moving, mass, 0));
@@ -204,8 +205,8 @@ impl<const D: usize, R: Real> Scheme<D, R> for Kinetic {
         // 1 - mu with mu = -q.g/(dt |g|^2 h^{n+1}); q = 0 is rest in words
         let weight = dt * square * moving_h;
         let no_weight = weight.same(zero) | still;
-        let blend = R::of(1.0)
-            + R::select(no_weight, zero, dot(q, g) / R::select(no_weight, R::of(1.0), weight));
+        let blend =
+            R::of(1.0) + R::select(no_weight, zero, dot(q, g) / R::select(no_weight, R::of(1.0), weight));
         let static_depth = |k: usize| match self.static_depth {
             StaticDepth::New => resting_h,
             StaticDepth::Smoothed => edges.smoothed[k],
@@ -237,10 +238,7 @@ impl<const D: usize, R: Real> Scheme<D, R> for Kinetic {
     #[inline(always)]
     fn average(&self, keep: R, old: &Flow<D, R>, new: &Flow<D, R>) -> Flow<D, R> {
         let give = R::of(1.0) - keep;
-        Flow {
-            h: keep * old.h + give * new.h,
-            q: std::array::from_fn(|k| keep * old.q[k] + give * new.q[k]),
-        }
+        Flow { h: keep * old.h + give * new.h, q: std::array::from_fn(|k| keep * old.q[k] + give * new.q[k]) }
     }
     /// The published schemes prove no rest; a dry cell counts.
     #[inline(always)]

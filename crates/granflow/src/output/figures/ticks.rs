@@ -45,7 +45,8 @@ pub(super) fn number(value: f64, decimals: usize) -> String {
 }
 
 /// A number to three significant digits or as a power of ten, for running text.
-pub(super) fn short(value: f64) -> String {
+#[must_use]
+pub fn short(value: f64) -> String {
     let size = value.abs();
     if size == 0.0 || !value.is_finite() {
         return number(value, 0);

@@ -1,0 +1,146 @@
+//! `animation.png`: the thickness over time as an animated PNG, which every browser shows.
+
+use super::chute_figures::Window;
+use super::mountain_figures::{Ground, top};
+use super::path::REACHED;
+use super::story::Story;
+use super::{FilesError, Finished};
+use crate::output::figures::{
+    Axis, Colours, Curve, Figure, FigureError, Fill, HeatMap, Map, Overlay, Picture, Profiles, Style, short,
+};
+use crate::output::frames::Frames;
+use crate::output::whole_file;
+use rayon::prelude::*;
+use std::io;
+use std::path::PathBuf;
+
+/// At most so many pictures; of more instants every n-th is shown.
+const PICTURES: usize = 120;
+/// Pictures a second, and the seconds that the last one stays.
+const RATE: u16 = 8;
+const STAY: u16 = 3;
+
+/// Draw and write the film of a run.
+pub(super) fn write(run: &Finished, story: &Story) -> Result<PathBuf, FilesError> {
+    let mut frames = Frames::open(run.frames.path())?.0;
+    let times = frames.times().to_vec();
+    let field = frames.position("thickness").unwrap_or(0);
+    let every = times.len().div_ceil(PICTURES).max(1);
+    let shown: Vec<usize> = (0..times.len()).filter(|k| k % every == 0 || k + 1 == times.len()).collect();
+    let scene = Scene::of(run, story);
+    let path = run.directory.join("animation.png");
+    let Some(&start) = shown.first() else { return Ok(path) };
+    let first = scene.draw(times[start], &frames.read(start, field)?)?;
+    let mut failure = None;
+    let written = whole_file(&path, |out| {
+        let mut encoder = png::Encoder::new(out, first.width, first.height);
+        encoder.set_color(png::ColorType::Rgb);
+        encoder.set_depth(png::BitDepth::Eight);
+        encoder.set_compression(png::Compression::Fast);
+        encoder.set_animated(shown.len() as u32, 0).map_err(io::Error::other)?;
+        encoder.set_frame_delay(1, RATE).map_err(io::Error::other)?;
+        let mut writer = encoder.write_header().map_err(io::Error::other)?;
+        // As many pictures at once as there are cores: a film never fills the memory.
+        for group in shown.chunks(rayon::current_num_threads().max(1)) {
+            let mut fields = Vec::new();
+            for &k in group {
+                fields.push((times[k], frames.read(k, field).map_err(io::Error::other)?));
+            }
+            let pictures: Result<Vec<Picture>, FigureError> =
+                fields.par_iter().map(|(time, field)| scene.draw(*time, field)).collect();
+            let pictures = match pictures {
+                Ok(pictures) => pictures,
+                Err(error) => {
+                    failure = Some(error);
+                    return Err(io::Error::other("a picture could not be drawn"));
+                }
+            };
+            for (picture, k) in pictures.iter().zip(group) {
+                if k + 1 == times.len() {
+                    writer.set_frame_delay(STAY, 1).map_err(io::Error::other)?;
+                }
+                writer.write_image_data(&picture.rgb).map_err(io::Error::other)?;
+            }
+        }
+        writer.finish().map_err(io::Error::other)
+    });
+    match (written, failure) {
+        (_, Some(error)) => Err(error.into()),
+        (written, None) => {
+            written?;
+            Ok(path)
+        }
+    }
+}
+
+/// What all pictures share.
+struct Scene<'a> {
+    story: &'a Story,
+    ground: Option<Ground<'a>>,
+    window: Option<Window>,
+    /// Greatest thickness that the colours or the axis tell apart.
+    top: f64,
+}
+
+impl<'a> Scene<'a> {
+    fn of(run: &Finished, story: &'a Story) -> Scene<'a> {
+        let peak = run.map("peak_thickness");
+        let all = || story.thickness.iter().flatten().copied();
+        let most = match peak {
+            Some(peak) => top(peak.iter().copied().filter(|&h| h > 0.0)),
+            None => all().fold(0.0, f64::max),
+        };
+        let window = (!story.plane.y.is_empty() && !story.plane.is_terrain())
+            .then(|| Window::around(story, peak.unwrap_or(&story.plane.release)));
+        Scene { story, ground: Ground::of(story), window, top: if most > 0.0 { most } else { 1.0 } }
+    }
+
+    fn draw(&self, time: f64, field: &[f64]) -> Result<Picture, FigureError> {
+        let story = self.story;
+        let subtitle = format!("t = {} {}", short(time), story.unit("s"));
+        let thickness = Axis::new("thickness h", story.unit("m")).over(0.0, self.top);
+        if let Some(ground) = &self.ground {
+            let overlay = Overlay {
+                values: field,
+                quantity: thickness,
+                threshold: REACHED,
+                colours: Colours::Thickness,
+            };
+            return Map {
+                title: &story.title,
+                subtitle: &subtitle,
+                extent: ground.extent,
+                bed: ground.bed,
+                overlay: Some(overlay),
+                outlines: &ground.outlines(true, false),
+                ..Default::default()
+            }
+            .draw();
+        }
+        let x = Axis::new("x", "");
+        if let Some(window) = &self.window {
+            return HeatMap {
+                title: &story.title,
+                subtitle: &subtitle,
+                x,
+                y: Axis::new("y", ""),
+                xs: &window.x,
+                ys: &window.y,
+                values: &window.cut(field),
+                quantity: thickness,
+                ..Default::default()
+            }
+            .draw();
+        }
+        let xs = &story.plane.x;
+        Profiles {
+            title: &story.title,
+            subtitle: &subtitle,
+            x,
+            y: Axis::new("thickness h", "").over(0.0, 1.08 * self.top),
+            curves: &[Curve { name: "", x: xs, y: field, style: Style::Solid, colour: None }],
+            fills: &[Fill { name: "", x: xs, lower: None, upper: field, colour: [201, 178, 140] }],
+        }
+        .draw()
+    }
+}

@@ -1,0 +1,184 @@
+//! All files that a case asks for, made of a finished run.
+
+use super::story::Story;
+use super::{Finished, animation, chute_figures, drawing, mountain_figures, outlines, rasters};
+use crate::case::FileKind;
+use crate::output::figures::FigureError;
+use crate::output::frames::Frames;
+use crate::output::report::{self, Report};
+use crate::output::summary::StopReason;
+use crate::output::{self, csv, vtk};
+use crate::raster::RasterError;
+use std::path::{Path, PathBuf};
+
+/// A larger share of the mass in films is worth a warning.
+pub const FILM_SHARE: f64 = 0.005;
+
+/// Why a file could not be made of a run.
+#[derive(Debug, thiserror::Error)]
+pub enum FilesError {
+    /// A file of the results could not be read or written.
+    #[error(transparent)]
+    Output(#[from] output::Error),
+    /// A figure could not be drawn or written.
+    #[error(transparent)]
+    Figure(#[from] FigureError),
+    /// A raster could not be written.
+    #[error(transparent)]
+    Raster(#[from] RasterError),
+    /// There is no such result.
+    #[error("{}: cannot open: {source}; `granflow run CASE.toml` writes a result.nc", path.display())]
+    Missing {
+        /// The file.
+        path: PathBuf,
+        /// What the system said.
+        source: std::io::Error,
+    },
+    /// The file is no result of granflow.
+    #[error("{}: this is no result of granflow: {problem}; give the result.nc of a run", path.display())]
+    Foreign {
+        /// The file.
+        path: PathBuf,
+        /// What is wrong with it.
+        problem: String,
+    },
+}
+
+impl Story {
+    /// Draw the standard figures into `folder`.
+    ///
+    /// # Errors
+    /// [`FilesError`] naming the figure or the file.
+    pub fn draw(&self, folder: &Path) -> Result<Vec<report::Figure>, FilesError> {
+        let drawings = match (self.plane.is_terrain(), self.plane.y.is_empty()) {
+            (true, _) => mountain_figures::mountain(self),
+            (false, true) => chute_figures::line(self),
+            (false, false) => chute_figures::plane(self),
+        };
+        Ok(drawing::save_all(&drawings, folder)?)
+    }
+}
+
+impl Finished {
+    /// Write every kind of file that the case asks for, beyond `result.nc`, `mass.csv` and `summary.json`; returns their
+    /// paths.
+    ///
+    /// # Errors
+    /// [`FilesError`] naming the file.
+    pub fn write_files(&self) -> Result<Vec<PathBuf>, FilesError> {
+        let asked = |kind| self.files.contains(&kind);
+        let mut written = Vec::new();
+        let drawn = asked(FileKind::Figures) || asked(FileKind::Report);
+        let story = (drawn || asked(FileKind::Animation)).then(|| Story::of(self)).transpose()?;
+        let (figures, rasters) = rayon::join(
+            || match story.as_ref().filter(|_| drawn) {
+                Some(story) => story.draw(&self.figures()),
+                None => Ok(Vec::new()),
+            },
+            || if asked(FileKind::Geotiff) { rasters::write(self) } else { Ok(Vec::new()) },
+        );
+        let figures = figures?;
+        written.extend(figures.iter().map(|figure| figure.path.clone()));
+        written.extend(rasters?);
+        if asked(FileKind::Vector) {
+            written.extend(outlines::write(self)?);
+        }
+        if asked(FileKind::Csv) {
+            written.push(self.write_table()?);
+        }
+        if asked(FileKind::Vtk) {
+            written.extend(self.write_vtk()?);
+        }
+        if let Some(story) = story.as_ref().filter(|_| asked(FileKind::Animation)) {
+            written.push(animation::write(self, story)?);
+        }
+        if asked(FileKind::Report) {
+            written.push(self.write_report(&figures)?);
+        }
+        Ok(written)
+    }
+
+    /// `profiles.csv`: every instant of a line; `maps.csv`: the summary maps of a plane, a line per cell.
+    fn write_table(&self) -> Result<PathBuf, output::Error> {
+        let (x, y) = (&self.plane.x, &self.plane.y);
+        if y.is_empty() {
+            let path = self.directory.join("profiles.csv");
+            csv::write(&path, x, &mut Frames::open(self.frames.path())?.0)?;
+            return Ok(path);
+        }
+        let path = self.directory.join("maps.csv");
+        output::whole_file(&path, |out| {
+            let names: Vec<&str> = self.maps.iter().map(|(name, _)| *name).collect();
+            writeln!(out, "x,y,{}", names.join(","))?;
+            for k in 0..x.len() * y.len() {
+                write!(out, "{:?},{:?}", x[k % x.len()], y[k / x.len()])?;
+                for value in self.maps.iter().map(|(_, map)| map[k]) {
+                    if value.is_nan() { write!(out, ",")? } else { write!(out, ",{value:?}")? }
+                }
+                writeln!(out)?;
+            }
+            Ok(())
+        })?;
+        Ok(path)
+    }
+
+    /// `result.pvd` and `vtk/frame_0000.vti`, ...
+    fn write_vtk(&self) -> Result<Vec<PathBuf>, output::Error> {
+        let mut frames = Frames::open(self.frames.path())?.0;
+        let spacing = |c: &[f64]| c.get(1).map(|second| second - c[0]);
+        let (x, y) = (&self.plane.x, &self.plane.y);
+        let dx = spacing(x).unwrap_or(1.0);
+        let dy = spacing(y).unwrap_or(dx);
+        let low = |c: &[f64], d: f64| c.first().map_or(0.0, |first| first - 0.5 * d);
+        let image = vtk::Image {
+            cells: [x.len(), y.len().max(1)],
+            origin: [low(x, dx), low(y, dy)],
+            spacing: [dx, dy],
+        };
+        let (mut written, mut index) = (Vec::new(), Vec::new());
+        for (k, time) in frames.times().to_vec().into_iter().enumerate() {
+            let names: Vec<String> = frames.fields().iter().map(|field| field.name.clone()).collect();
+            let mut fields = Vec::new();
+            for (field, name) in names.iter().enumerate() {
+                fields.push((name.as_str(), frames.read(k, field)?));
+            }
+            let fields: Vec<(&str, &[f64])> = fields.iter().map(|(name, v)| (*name, v.as_slice())).collect();
+            let name = format!("vtk/frame_{k:04}.vti");
+            let path = self.directory.join(&name);
+            vtk::write_frame(&path, image, frames.precision(), &fields)?;
+            written.push(path);
+            index.push((time, name));
+        }
+        let collection = self.directory.join("result.pvd");
+        vtk::write_collection(&collection, &index)?;
+        written.push(collection);
+        Ok(written)
+    }
+
+    fn write_report(&self, figures: &[report::Figure]) -> Result<PathBuf, output::Error> {
+        let summary = &self.summary;
+        let mut warnings = Vec::new();
+        if !matches!(summary.stop_reason, StopReason::AtRest | StopReason::Steady) {
+            warnings.push(format!(
+                "the run ended before the mass was at rest ({}); what is called deposit is the thickness at the end.",
+                summary.stop_reason
+            ));
+        }
+        if summary.film_share() > FILM_SHARE {
+            let share = 100.0 * summary.film_share();
+            warnings
+                .push(format!("{share:.2} % of the mass is held in films thinner than {:e} m.", self.film));
+        }
+        let path = self.directory.join("report.html");
+        let report = Report {
+            summary,
+            more: &[],
+            warnings: &warnings,
+            figures,
+            case: &self.case,
+            ledger: &self.ledger,
+        };
+        report::write_report(&path, report)?;
+        Ok(path)
+    }
+}

@@ -1,0 +1,160 @@
+//! The figures of a run on a mountain: shaded maps, the section along the path, the history.
+
+use super::drawing::Drawing;
+use super::outlines::{lattice, release_threshold, rings};
+use super::path::{PathLine, REACHED, path};
+use super::story::Story;
+use crate::output::figures::{Axis, Colours, Extent, Figure, Map, Outline, Overlay, Section, short};
+use crate::output::outlines::contour;
+use std::sync::Arc;
+
+/// Colour of the release's outline, and of the edge of all that was reached.
+const RELEASE: [u8; 3] = [20, 20, 20];
+const EDGE: [u8; 3] = [0, 90, 160];
+const PATH: [u8; 3] = [0, 120, 80];
+/// Stands where a map shows nothing: so low that no interpolation brings it back.
+const NOWHERE: f64 = -1e12;
+
+/// What all maps of a run share.
+#[derive(Debug)]
+pub(super) struct Ground<'a> {
+    pub extent: Extent,
+    pub bed: &'a [f64],
+    pub release: Vec<Vec<[f64; 2]>>,
+    pub footprint: Vec<Vec<[f64; 2]>>,
+    pub path: Option<PathLine>,
+}
+
+impl<'a> Ground<'a> {
+    pub fn of(story: &'a Story) -> Option<Ground<'a>> {
+        let raster = story.plane.bed.as_ref()?;
+        let extent = Extent {
+            nx: raster.columns,
+            ny: raster.rows,
+            west: raster.west,
+            south: raster.south,
+            cell: raster.cell,
+        };
+        let outline = |map: &[f64], threshold: f64| {
+            rings(&contour(map, lattice(raster), threshold), 4.0 * raster.cell * raster.cell)
+        };
+        let release = &story.plane.release;
+        Some(Ground {
+            extent,
+            bed: &raster.values,
+            release: outline(release, release_threshold(release)),
+            footprint: story.map("peak_thickness").map_or(Vec::new(), |map| outline(map, REACHED)),
+            path: path(story),
+        })
+    }
+
+    /// The lines over a map: release, and, if wanted, the edge of all that was reached and the path.
+    pub fn outlines(&self, edge: bool, along: bool) -> Vec<Outline<'_>> {
+        let mut outlines = Vec::new();
+        for (k, points) in self.release.iter().enumerate() {
+            let name = if k == 0 { "release" } else { "" };
+            outlines.push(Outline { name, points, closed: true, dashed: false, colour: Some(RELEASE) });
+        }
+        if edge {
+            for (k, points) in self.footprint.iter().enumerate() {
+                let name = if k == 0 { "reached" } else { "" };
+                outlines.push(Outline { name, points, closed: true, dashed: true, colour: Some(EDGE) });
+            }
+        }
+        if let Some(path) = self.path.as_ref().filter(|_| along) {
+            let points = &path.points;
+            outlines.push(Outline { name: "path", points, closed: false, dashed: true, colour: Some(PATH) });
+        }
+        outlines
+    }
+}
+
+/// The top of a range of colours: the greatest value, or where a few cells stand far above the others the value that
+/// one in 500 exceeds.
+pub(super) fn top(values: impl Iterator<Item = f64>) -> f64 {
+    let mut values: Vec<f64> = values.collect();
+    values.sort_by(f64::total_cmp);
+    let Some(&most) = values.last() else { return 1.0 };
+    let nearly = values[(values.len() - 1) * 499 / 500];
+    if most > 1.25 * nearly { nearly } else { most }
+}
+
+/// All figures of a run on a mountain.
+pub(super) fn mountain(story: &Story) -> Vec<Drawing<'_>> {
+    let (Some(ground), Some(peak)) = (Ground::of(story), story.map("peak_thickness")) else {
+        return Vec::new();
+    };
+    let ground = Arc::new(ground);
+    let mut drawings = Vec::new();
+    let plan: [(&'static str, &str, &str, Colours); 5] = [
+        ("peak_thickness", "greatest thickness", "m", Colours::Thickness),
+        ("deposit", "deposit", "m", Colours::Thickness),
+        ("peak_speed", "greatest speed", "m/s", Colours::Speed),
+        ("peak_pressure", "greatest pressure", "kPa", Colours::Speed),
+        ("arrival_time", "arrival time", "s", Colours::Viridis),
+    ];
+    for (name, label, unit, colours) in plan {
+        let Some(map) = story.map(name) else { continue };
+        let ground = ground.clone();
+        // Films are fast and thin: a figure shows what a person would see.
+        let thick = if name == "deposit" { map } else { peak };
+        let layer = matches!(name, "peak_thickness" | "deposit");
+        let value = |(&v, &h): (&f64, &f64)| match v {
+            _ if layer => v,
+            v if h > REACHED && v.is_finite() => v,
+            _ => NOWHERE,
+        };
+        let shown: Vec<f64> = map.iter().zip(thick).map(value).collect();
+        let most = shown.iter().fold(0.0_f64, |most, v| most.max(*v));
+        let limit = top(shown.iter().copied().filter(|&v| v > 0.0));
+        let clipped =
+            if limit < most { ", colours end at the value that 0.2 % of the cells exceed" } else { "" };
+        let of = if name == "deposit" { "where it is" } else { "where the flow was" };
+        let what = format!("{label}, largest {} {unit}{clipped}", short(most));
+        let subtitle = format!("{what}; {}", story.subtitle);
+        let lines = "; dashed: the edge of all that was reached, and the path of the section";
+        let lines = if name == "deposit" { lines } else { "" };
+        let mut caption = format!("{what}; shown {of} thicker than {REACHED} m{lines}.");
+        caption[..1].make_ascii_uppercase();
+        drawings.push(Drawing::new(name, caption, move || {
+            let quantity = Axis::new(label, unit).over(0.0, if limit > 0.0 { limit } else { 1.0 });
+            let threshold = if layer { REACHED } else { -0.5 };
+            let overlay = Overlay { values: &shown, quantity, threshold, colours };
+            Map {
+                title: &story.title,
+                subtitle: &subtitle,
+                extent: ground.extent,
+                bed: ground.bed,
+                overlay: Some(overlay),
+                outlines: &ground.outlines(name == "deposit", name == "deposit"),
+                ..Default::default()
+            }
+            .draw()
+        }));
+    }
+    if let (true, Some(deposit), Some(speed)) =
+        (ground.path.is_some(), story.map("deposit"), story.map("peak_speed"))
+    {
+        let caption = "Section along the path: from the highest released cell to the farthest one reached, where \
+                       greatest thickness times greatest speed is largest. The layers are drawn thicker than they \
+                       are, as stated; the ground has its true height.";
+        let ground = ground.clone();
+        drawings.push(Drawing::new("section", caption, move || {
+            let Some(path) = &ground.path else { return Section::default().draw() };
+            let along = |map: &[f64]| path.cells.iter().map(|&k| map[k]).collect::<Vec<f64>>();
+            Section {
+                title: &story.title,
+                subtitle: "along the path of the greatest flow, from the highest release to the farthest reach",
+                distance: &path.distance,
+                bed: &along(ground.bed),
+                deposit: &along(deposit),
+                peak_thickness: &along(peak),
+                peak_speed: &along(speed),
+                exaggeration: None,
+            }
+            .draw()
+        }));
+    }
+    drawings.extend(super::history_figure::drawing(story));
+    drawings
+}
