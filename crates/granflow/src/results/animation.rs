@@ -87,7 +87,8 @@ impl<'a> Scene<'a> {
         let peak = run.map("peak_thickness");
         let all = || story.thickness.iter().flatten().copied();
         let most = match peak {
-            Some(peak) => top(peak.iter().copied().filter(|&h| h > 0.0)),
+            Some(peak) if story.plane.is_terrain() => top(peak.iter().copied().filter(|&h| h > REACHED)),
+            Some(peak) => peak.iter().copied().fold(0.0, f64::max),
             None => all().fold(0.0, f64::max),
         };
         let window = (!story.plane.y.is_empty() && !story.plane.is_terrain())

@@ -106,7 +106,8 @@ pub(super) fn mountain(story: &Story) -> Vec<Drawing<'_>> {
         };
         let shown: Vec<f64> = map.iter().zip(thick).map(value).collect();
         let most = shown.iter().fold(0.0_f64, |most, v| most.max(*v));
-        let limit = top(shown.iter().copied().filter(|&v| v > 0.0));
+        let least = if layer { REACHED } else { 0.0 };
+        let limit = top(shown.iter().copied().filter(|&v| v > least));
         let clipped =
             if limit < most { ", colours end at the value that 0.2 % of the cells exceed" } else { "" };
         let of = if name == "deposit" { "where it is" } else { "where the flow was" };

@@ -1,0 +1,180 @@
+//! One small run on a mountain and one on a chute: every kind of file opens and holds what the run left.
+
+use granflow::case::Case;
+use granflow::output::summary::StopReason;
+use granflow::raster::Raster;
+use granflow::results::{FilesError, Finished, Story};
+use granflow::run::{Options, run};
+use std::fmt::Write as _;
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::sync::atomic::AtomicBool;
+
+fn computed(case: &str, folder: &Path) -> Finished {
+    let file = folder.join("case.toml");
+    fs::write(&file, case).unwrap();
+    let case = Case::load(&file).unwrap();
+    case.check().unwrap();
+    let options =
+        Options { directory: folder.join("out"), threads: 2, resume: false, command: "test".to_owned() };
+    run(&case, &options, &AtomicBool::new(false), &mut |_| ()).unwrap()
+}
+
+/// A slope of 35 deg that ends on a plain, with a corner of nodata, and a heap upon it.
+fn avalanche(folder: &Path) -> Finished {
+    let mut text =
+        "ncols 30\nnrows 60\nxllcorner 1000\nyllcorner 2000\ncellsize 5\nNODATA_value -9999\n".to_owned();
+    for row in 0..60 {
+        for column in 0..30 {
+            let z = 0.7 * (5.0 * (59.0 - f64::from(row)) - 120.0).max(0.0);
+            let z = if row > 55 && column < 3 { -9999.0 } else { z + 500.0 };
+            let _ = write!(text, "{z} ");
+        }
+        text.push('\n');
+    }
+    fs::write(folder.join("slope.asc"), text).unwrap();
+    let case = r#"
+title = "A small slide"
+[terrain]
+dem = "slope.asc"
+crs = "EPSG:31287"
+curvature = "off"
+[material]
+density = 300.0
+friction.coulomb = { mu = 0.4 }
+[[release]]
+cap = { height = 2.0, centre = [1075.0, 2230.0], radius = 25.0 }
+[time]
+until = "rest"
+end = 200.0
+[output]
+every = 4.0
+precision = "f64"
+files = ["netcdf", "csv", "vtk", "geotiff", "vector", "figures", "animation", "report"]
+"#;
+    computed(case, folder)
+}
+
+/// Width, height and number of pictures of a PNG whose pixels are not all alike.
+fn picture(path: &Path) -> (u32, u32, u32) {
+    let file = std::io::BufReader::new(fs::File::open(path).unwrap());
+    let mut reader = png::Decoder::new(file).read_info().unwrap();
+    let mut rgb = vec![0; reader.output_buffer_size().unwrap()];
+    reader.next_frame(&mut rgb).unwrap();
+    let mut colours = rgb.as_chunks::<3>().0.to_vec();
+    colours.sort_unstable();
+    colours.dedup();
+    assert!(colours.len() > 20, "{}: {} colours", path.display(), colours.len());
+    let info = reader.info();
+    (info.width, info.height, info.animation_control().map_or(1, |film| film.num_frames))
+}
+
+#[test]
+fn every_file_of_a_mountain_opens_and_holds_the_run() {
+    let folder = tempfile::tempdir().unwrap();
+    let run = avalanche(folder.path());
+    assert_eq!(run.summary.stop_reason, StopReason::AtRest);
+    let written = run.write_files().unwrap();
+    assert!(written.iter().all(|path| path.exists()), "{written:?}");
+    let out = |name: &str| folder.path().join("out").join(name);
+
+    for name in ["peak_thickness", "deposit", "peak_speed", "arrival_time", "section", "history"] {
+        let (width, height, pictures) = picture(&out(&format!("figures/{name}.png")));
+        assert!(width > 500 && height > 500 && pictures == 1, "{name}");
+    }
+    assert_eq!(picture(&out("animation.png")).2 as usize, run.frames.times().len());
+
+    let raster = |name: &str| Raster::read(&out(&format!("rasters/{name}.tif"))).unwrap();
+    let deposit = raster("deposit");
+    assert_eq!((deposit.columns, deposit.rows, deposit.west, deposit.south), (30, 60, 1000.0, 2000.0));
+    assert_eq!(deposit.crs.as_ref().and_then(|crs| crs.epsg), Some(31287));
+    assert!(deposit.at(0, 0).is_nan() && deposit.at(5, 0) == 0.0);
+    for (there, here) in deposit.values.iter().zip(run.map("deposit").unwrap()) {
+        assert!(there.is_nan() || (there - if *here < run.film { 0.0 } else { *here }).abs() < 1e-6);
+    }
+    let (arrival, stopping) = (raster("arrival_time"), raster("stopping_time"));
+    assert!(arrival.at(0, 59).is_nan(), "nothing arrived in the corner");
+    assert!(stopping.range().unwrap().1 <= run.summary.time);
+
+    let outlines: serde_json::Value =
+        serde_json::from_str(&fs::read_to_string(out("outlines.geojson")).unwrap()).unwrap();
+    let names: Vec<&str> = outlines["features"]
+        .as_array()
+        .unwrap()
+        .iter()
+        .map(|f| f["properties"]["name"].as_str().unwrap())
+        .collect();
+    assert_eq!(names, ["release", "deposit", "peak_thickness"]);
+    let area = |k: usize| outlines["features"][k]["properties"]["area"].as_f64().unwrap();
+    assert!(area(0) > 1000.0 && area(2) > area(0) && area(2) > area(1));
+
+    let report = fs::read_to_string(out("report.html")).unwrap();
+    let runout = run.summary.runout.unwrap().floor().to_string();
+    for part in ["A small slide", "at rest", "friction.coulomb", "Arrival time", &runout] {
+        assert!(report.contains(part), "{part}");
+    }
+    assert_eq!(report.matches("data:image/png;base64,").count(), 7);
+    assert_eq!(fs::read_to_string(out("maps.csv")).unwrap().lines().count(), 1 + 30 * 60);
+    let collection = fs::read_to_string(out("result.pvd")).unwrap();
+    assert_eq!(collection.matches(".vti").count(), run.frames.times().len());
+}
+
+#[test]
+fn a_result_is_drawn_again_as_it_was() {
+    let folder = tempfile::tempdir().unwrap();
+    let run = avalanche(folder.path());
+    run.write_files().unwrap();
+    let again = folder.path().join("again");
+    let figures = Story::read(&run.result()).unwrap().draw(&again).unwrap();
+    assert_eq!(figures.len(), 7);
+    for figure in figures {
+        let name = figure.path.file_name().unwrap();
+        let first = fs::read(run.figures().join(name)).unwrap();
+        assert!(fs::read(&figure.path).unwrap() == first, "{name:?}");
+    }
+}
+
+#[test]
+fn a_chute_leaves_profiles_and_a_film() {
+    let folder = tempfile::tempdir().unwrap();
+    let case = r#"
+title = "A heap"
+model = "savage_hutter"
+[grid]
+x = { from = -3.0, to = 3.0, cells = 60 }
+boundary = "open"
+[material]
+epsilon = 0.4
+slope = "0 deg"
+friction.coulomb = { angle = "18 deg" }
+[initial]
+thickness.steps = { at = [-1.0, 1.0], values = [0.3, 1.3, 0.3] }
+[time]
+end = 1.0
+[output]
+every = 0.25
+files = ["netcdf", "csv", "figures", "animation"]
+"#;
+    let run = computed(case, folder.path());
+    run.write_files().unwrap();
+    for name in ["profile", "velocity", "space_time_thickness", "space_time_velocity", "surface", "history"] {
+        picture(&run.figures().join(format!("{name}.png")));
+    }
+    assert_eq!(picture(&run.directory.join("animation.png")).2, 5);
+    let table = fs::read_to_string(run.directory.join("profiles.csv")).unwrap();
+    assert_eq!(
+        (table.lines().count(), table.lines().next()),
+        (1 + 5 * 60, Some("time,x,thickness,velocity_x"))
+    );
+}
+
+#[test]
+fn a_missing_and_a_foreign_result_are_named() {
+    let folder = tempfile::tempdir().unwrap();
+    let path: PathBuf = folder.path().join("result.nc");
+    let missing = Story::read(&path).unwrap_err();
+    assert!(matches!(missing, FilesError::Missing { .. }) && missing.to_string().contains("granflow run"));
+    fs::write(&path, "no NetCDF").unwrap();
+    let foreign = Story::read(&path).unwrap_err();
+    assert!(matches!(foreign, FilesError::Foreign { .. }) && foreign.to_string().contains("result.nc"));
+}
