@@ -42,8 +42,9 @@ fn after(verfahren: u8, name: &str, count: usize) -> Simulation<1, Kinetic> {
     })
 }
 
+/// The largest value; NaN if any is, so that no comparison passes by leaving one out.
 fn largest(values: impl Iterator<Item = f64>) -> f64 {
-    values.fold(0.0, f64::max)
+    values.fold(0.0, |most, value| if value.is_nan() || most.is_nan() { f64::NAN } else { most.max(value) })
 }
 
 fn speed(run: &Simulation<1, Kinetic>) -> f64 {
