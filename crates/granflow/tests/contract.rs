@@ -58,8 +58,8 @@ fn rough<const D: usize>(seed: u64, dry: bool) -> impl Fn([usize; D]) -> Flow<D,
         let u: [f64; D] = std::array::from_fn(|_| dice.between(-0.5, 0.5));
         let lot = (dice.roll() * 35.0) as usize;
         match lot {
-            _ if dry && lot % 7 == 0 => Flow::still(0.0),
-            _ if lot % 5 == 0 => Flow::still(h),
+            _ if dry && lot.is_multiple_of(7) => Flow::still(0.0),
+            _ if lot.is_multiple_of(5) => Flow::still(h),
             _ => Flow { h, q: u.map(|u| h * u) },
         }
     }

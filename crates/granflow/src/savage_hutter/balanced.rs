@@ -326,8 +326,8 @@ impl<F: Friction, const D: usize, R: Real, B: Bed<D, R>> Scheme<D, R> for Balanc
             let Faces { lo, hi } = &faces[axis];
             let lambda = dt * per[axis];
             gone = gone + lambda * (hi.mass - lo.mass);
-            for k in 0..D {
-                lost[k] = lost[k] + lambda * (hi.left.momentum[k] - lo.right.momentum[k]);
+            for (k, lost) in lost.iter_mut().enumerate() {
+                *lost = *lost + lambda * (hi.left.momentum[k] - lo.right.momentum[k]);
             }
         }
         // One difference of symmetric sums: the axes can be exchanged to the last bit.
