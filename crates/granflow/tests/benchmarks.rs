@@ -205,7 +205,7 @@ fn down_the_terrain(
     exact: impl Fn(f64, f64) -> Flow1,
 ) -> f64 {
     let cos = zeta.cos();
-    let grid = line(from * cos, to * cos, cells, Boundary::Open);
+    let grid = line(from * cos, to * cos, cells, Boundary::Nothing);
     let grounds = terrain(&grid, slope(zeta));
     let mut run = run(order, (mu, 1e-9), order.courant(), grid, &grounds, |[x], _| {
         let Flow1 { h, u } = exact(x / cos, 0.0);
@@ -316,7 +316,7 @@ fn flat_dam(order: Order, cells: usize) -> f64 {
 
 fn thacker(order: Order, cells: usize) -> f64 {
     let exact = ThackerParaboloid::new(GRAVITY, 1.0, 0.5, 1e-4).expect("a lake");
-    let sheet = grid([cells; 2], [-2.0; 2], 4.0 / cells as f64, Boundary::Open);
+    let sheet = grid([cells; 2], [-2.0; 2], 4.0 / cells as f64, Boundary::Nothing);
     let bend = 2e-4;
     let grounds = terrain(&sheet, |[x, y]| {
         Some(Surface { z: exact.bed(x, y), slope: [bend * x, bend * y], bent: [[bend, 0.0], [0.0, bend]] })
@@ -477,7 +477,7 @@ fn a_slab_on_terrain_stops_at_the_exact_time() {
     for order in ORDERS {
         for angle in [0.0, 35.0_f64] {
             let (sin, cos) = angle.to_radians().sin_cos();
-            let sheet = grid([121, 121], [0.0; 2], 2.0, Boundary::Open);
+            let sheet = grid([121, 121], [0.0; 2], 2.0, Boundary::Nothing);
             let fall = [-zeta.tan() * cos, -zeta.tan() * sin];
             let grounds = terrain(&sheet, |[x, y]| {
                 Some(Surface { z: 900.0 + fall[0] * x + fall[1] * y, slope: fall, bent: [[0.0; 2]; 2] })

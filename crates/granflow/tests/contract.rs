@@ -135,7 +135,7 @@ fn flux_of_equal_states_is_the_flux_of_the_equation() {
     every::<1>(0.0, &Consistency);
     every::<2>(0.0, &Consistency);
     let slopes = |z: f64, slope| {
-        let cell = grid([1, 1], [0.0, 0.0], 1.0, Boundary::Open);
+        let cell = grid([1, 1], [0.0, 0.0], 1.0, Boundary::Nothing);
         terrain(&cell, |_| Some(Surface { z, slope, bent: [[0.0; 2]; 2] }))[0]
     };
     for order in ORDERS {
@@ -509,7 +509,7 @@ fn mass_is_kept_and_what_leaves_is_booked() {
 
 /// A pile on bumpy ground that partly leaves, partly stops; nodata in one corner.
 fn avalanche(order: Order) -> support::Run<2, Terrain<2, f64>> {
-    let sheet = grid([83, 61], [0.0; 2], 2.0, Boundary::Open);
+    let sheet = grid([83, 61], [0.0; 2], 2.0, Boundary::Nothing);
     let bed = bumps(5);
     let grounds = terrain(&sheet, |[x, y]| {
         if x + y > 250.0 {

@@ -146,7 +146,7 @@ fn inclined([x, y]: [f64; 2], slope: [f64; 2]) -> Surface<2> {
 
 /// A pile of yield share `s` on a tilted plane of terrain, its lengths measured along the bed.
 fn terrain_pile(order: Order, slope: [f64; 2], shape: Shape, s: f64) -> Run<2, Terrain<2, f64>> {
-    let sheet = grid([48, 45], [-120.0, -112.5], 5.0, Boundary::Open);
+    let sheet = grid([48, 45], [-120.0, -112.5], 5.0, Boundary::Nothing);
     let grounds = terrain(&sheet, |x| Some(inclined(x, slope)));
     run(order, (MU, FILM), order.courant(), sheet, &grounds, |x, ground| {
         let surface = 712.0 - s * MU * ground.cos * shape.distance(x, slope);
@@ -204,7 +204,7 @@ fn curved_pile(
     shape: Shape,
     hole: bool,
 ) -> Run<2, Terrain<2, f64>> {
-    let sheet = grid([48, 45], [-120.0, -112.5], 5.0, Boundary::Open);
+    let sheet = grid([48, 45], [-120.0, -112.5], 5.0, Boundary::Nothing);
     let outside = |[x, y]: [f64; 2]| hole && x - y > 20.0 + 7.0 * (0.2 * y).sin();
     let grounds = terrain(&sheet, |x| if outside(x) { None } else { Some(bed(x)) });
     let flattest = grounds.iter().map(|g| g.cos).filter(|c| *c > 0.0).fold(1.0, f64::min);
@@ -257,7 +257,7 @@ fn piles_on_curved_beds_rest_with_nodata_beside_them() {
 fn a_slab_steeper_than_friction_starts_everywhere_also_at_the_edges_of_the_data() {
     for order in ORDERS {
         for hole in [false, true] {
-            let sheet = grid([20, 18], [0.0; 2], 5.0, Boundary::Open);
+            let sheet = grid([20, 18], [0.0; 2], 5.0, Boundary::Nothing);
             let slope = [-0.4, 0.45];
             let inside = |[x, y]: [f64; 2]| !(hole && x + y > 130.0);
             let grounds = terrain(&sheet, |x| inside(x).then(|| inclined(x, slope)));
@@ -280,7 +280,7 @@ fn a_lake_with_an_island_is_exactly_at_rest_without_friction() {
         for seed in 1..=4 {
             for hole in [false, true] {
                 let bed = hills(seed);
-                let sheet = grid([60, 50], [-150.0, -125.0], 5.0, Boundary::Open);
+                let sheet = grid([60, 50], [-150.0, -125.0], 5.0, Boundary::Nothing);
                 let outside = |[x, y]: [f64; 2]| hole && (x - 60.0).hypot(y) < 20.0;
                 let grounds = terrain(&sheet, |x| if outside(x) { None } else { Some(bed(x)) });
                 let mut run = run(order, (0.0, FILM), order.courant(), sheet, &grounds, |x, ground| {
@@ -434,7 +434,7 @@ fn the_published_piles_come_to_rest_by_themselves() {
 #[test]
 fn the_static_bound_is_a_disc_in_the_metric() {
     // The pull on a uniform slab of slope theta is g sin(theta), whatever its direction.
-    let sheet = grid([9, 9], [0.0; 2], 1.0, Boundary::Open);
+    let sheet = grid([9, 9], [0.0; 2], 1.0, Boundary::Nothing);
     for angle in [0.0, 20.0, 45.0, 70.0, 90.0_f64] {
         let (sin, cos) = angle.to_radians().sin_cos();
         for (slope, held) in [(MU * (1.0 - 1e-9), true), (MU * BEYOND, false)] {

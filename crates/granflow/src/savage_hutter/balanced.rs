@@ -75,8 +75,8 @@ pub struct Edges<const D: usize, R: Real, B> {
     held: R::Mask,
     /// Dry, or a film, or outside: takes what comes, gives nothing.
     void: R::Mask,
-    /// q = 0.
-    still: R::Mask,
+    /// At rest with its pull within the static bound, whatever the drops: only a change beside it moves it.
+    settled: R::Mask,
 }
 
 /// What passes a face.
@@ -218,8 +218,8 @@ impl<F: Friction, const D: usize, R: Real, B: Bed<D, R>> Scheme<D, R> for Balanc
         let Stance { rise, weight, pull, holding } = self.stance(near);
         let void = self.is_void(state.h, &ground);
         let bound = holding * R::of(Self::SLACK) + ground.rounding(state.h, per[0]);
-        let still = state.is_still();
-        let mut held = ground.square(pull).le(bound * bound) & still & !void;
+        let settled = ground.square(pull).le(bound * bound) & state.is_still() & !void;
+        let mut held = settled;
         // A symmetric tower pulls nowhere, yet falls: bound the drop towards each neighbour too.
         for axis in 0..D {
             let drop = bound * near.spacing.size[axis] * ground.stretch(axis);
@@ -229,7 +229,7 @@ impl<F: Friction, const D: usize, R: Real, B: Bed<D, R>> Scheme<D, R> for Balanc
         }
 
         let mut edges =
-            Edges { lo: [Edge::closed(); D], hi: [Edge::closed(); D], bed: ground, held, void, still };
+            Edges { lo: [Edge::closed(); D], hi: [Edge::closed(); D], bed: ground, held, void, settled };
         for axis in 0..D {
             (edges.lo[axis].rise, edges.hi[axis].rise) = (rise[axis][0], rise[axis][1]);
             (edges.lo[axis].weight, edges.hi[axis].weight) = (weight[axis][0], weight[axis][1]);
@@ -360,7 +360,9 @@ impl<F: Friction, const D: usize, R: Real, B: Bed<D, R>> Scheme<D, R> for Balanc
         let size = bed.square(moved).sqrt();
         let loss = dt * depth * dry;
         let left = size - loss;
-        let stops = left.le(zero) | new.lt(R::of(self.film)) | new.le(zero);
+        // Slower than before, and within a step not by the last place of its depth: it has stopped.
+        let spent = left.le(speed * h) & (left * dt * per[0]).le(R::of(1e-15) * new);
+        let stops = left.le(zero) | spent | new.lt(R::of(self.film)) | new.le(zero);
         let safe = R::select(stops, R::of(1.0), size);
         // v + dt drag v^2 = left/h, solved for v: the part that grows with the square, implicitly.
         let z = dt * law.drag * left / R::select(stops, R::of(1.0), new);
@@ -402,12 +404,11 @@ impl<F: Friction, const D: usize, R: Real, B: Bed<D, R>> Scheme<D, R> for Balanc
             q: std::array::from_fn(|k| R::select(stopped, R::zero(), keep * old.q[k] + give * new.q[k])),
         }
     }
-    /// q = 0: what a step leaves unchanged, at rest, every later step leaves unchanged. Not only held cells: where
-    /// the surface bends, a cell may drop to one neighbour by more than friction holds and be stopped by it all the
-    /// same, because its pull is within the bound and held neighbours take nothing from it.
+    /// Void, or at rest with the pull within the bound. Not only held cells: where the surface bends, a cell may drop to
+    /// one neighbour by more than friction holds and stay all the same, for held neighbours take nothing from it.
     #[inline(always)]
     fn rests(&self, edges: &Edges<D, R, B>) -> R::Mask {
-        edges.still
+        edges.settled | edges.void
     }
     #[inline(always)]
     fn outside(&self, ground: &B) -> R::Mask {
