@@ -76,6 +76,7 @@ pub trait Real:
     /// beyond, asin x = pi/2 - 2 asin(sqrt((1 - x)/2)). One polynomial, no branch.
     #[inline(always)]
     fn asin(self) -> Self {
+        #[expect(clippy::excessive_precision, reason = "the fit as it came, rounded by the compiler")]
         const P: [f64; 12] = [
             0.028169218060881412899,
             -0.010749050339697807562,

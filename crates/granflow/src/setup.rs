@@ -24,10 +24,22 @@ pub enum SetupError {
     Case(#[from] CaseError),
     /// The terrain, or a raster of thicknesses, cannot be used.
     #[error(transparent)]
-    Raster(#[from] RasterError),
+    Raster(Box<RasterError>),
     /// A release cannot be used.
     #[error(transparent)]
-    Release(#[from] ReleaseError),
+    Release(Box<ReleaseError>),
+}
+
+impl From<RasterError> for SetupError {
+    fn from(error: RasterError) -> Self {
+        SetupError::Raster(Box::new(error))
+    }
+}
+
+impl From<ReleaseError> for SetupError {
+    fn from(error: ReleaseError) -> Self {
+        SetupError::Release(Box::new(error))
+    }
 }
 
 /// What a case describes, with every file read.

@@ -321,7 +321,8 @@ impl<const D: usize, S: Scheme<D, f64>> Simulation<D, S> {
         // A rest of the way that only rounding left over is part of the last step.
         let last = wanted * (1.0 + 1e-9) >= left;
         let (dt, time) = if last { (left, until) } else { (wanted, self.time + wanted) };
-        if !(time > self.time) || !dt.is_finite() {
+        let advances = time > self.time && dt.is_finite();
+        if !advances {
             return Err(Failure::Collapsed { step: self.step, time: self.time, dt });
         }
         self.wake();
