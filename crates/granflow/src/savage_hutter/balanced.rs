@@ -79,6 +79,16 @@ pub struct Edges<const D: usize, R: Real, B> {
     settled: R::Mask,
 }
 
+impl<const D: usize, R: Real, B> Edges<D, R, B> {
+    /// Of a cell that offers nothing.
+    #[inline(always)]
+    fn closed(bed: B, void: R::Mask) -> Self {
+        let never = R::zero().lt(R::zero());
+        let edges = [Edge::closed(); D];
+        Edges { lo: edges, hi: edges, bed, held: never, settled: never, void }
+    }
+}
+
 /// What passes a face.
 #[derive(Clone, Copy, Debug)]
 pub struct Flux<const D: usize, R> {
@@ -215,8 +225,18 @@ impl<F: Friction, const D: usize, R: Real, B: Bed<D, R>> Scheme<D, R> for Balanc
         let Cell { state, ground } = near.here;
         let (per, zero) = (near.spacing.per, R::zero());
         let u = state.velocity();
-        let Stance { rise, weight, pull, holding } = self.stance(near);
         let void = self.is_void(state.h, &ground);
+        // Nothing can come to a bare cell among bare ones: leave out the work.
+        let mut bare = void;
+        for axis in 0..D {
+            for there in [&near.lo[axis], &near.hi[axis]] {
+                bare = bare & self.is_void(there.state.h, &there.ground);
+            }
+        }
+        if !R::any(!bare) {
+            return Edges::closed(ground, void);
+        }
+        let Stance { rise, weight, pull, holding } = self.stance(near);
         let bound = holding * R::of(Self::SLACK) + ground.rounding(state.h, per[0]);
         let settled = ground.square(pull).le(bound * bound) & state.is_still() & !void;
         let mut held = settled;
@@ -228,8 +248,7 @@ impl<F: Friction, const D: usize, R: Real, B: Bed<D, R>> Scheme<D, R> for Balanc
             }
         }
 
-        let mut edges =
-            Edges { lo: [Edge::closed(); D], hi: [Edge::closed(); D], bed: ground, held, void, settled };
+        let mut edges = Edges { held, settled, ..Edges::closed(ground, void) };
         for axis in 0..D {
             (edges.lo[axis].rise, edges.hi[axis].rise) = (rise[axis][0], rise[axis][1]);
             (edges.lo[axis].weight, edges.hi[axis].weight) = (weight[axis][0], weight[axis][1]);
@@ -329,6 +348,14 @@ impl<F: Friction, const D: usize, R: Real, B: Bed<D, R>> Scheme<D, R> for Balanc
             for (k, lost) in lost.iter_mut().enumerate() {
                 *lost = *lost + lambda * (hi.left.momentum[k] - lo.right.momentum[k]);
             }
+        }
+        // What holds itself or is bare, and is not touched, stays: leave out the work.
+        let mut idle = (edges.held | edges.void) & gone.same(zero);
+        for k in 0..D {
+            idle = idle & lost[k].same(zero) & q[k].same(zero);
+        }
+        if !R::any(!idle) {
+            return here.state;
         }
         // One difference of symmetric sums: the axes can be exchanged to the last bit.
         let new = normal(h - gone);
