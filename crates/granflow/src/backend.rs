@@ -75,7 +75,7 @@ pub(crate) struct Sheet<'a> {
     len: usize,
     owner: PhantomData<&'a mut [f64]>,
 }
-// SAFETY: a sheet is only written through `put`, whose callers own disjoint places.
+// SAFETY: a sheet is only read and written through `get` and `put`, whose callers own disjoint places.
 unsafe impl Sync for Sheet<'_> {}
 unsafe impl Send for Sheet<'_> {}
 
@@ -124,6 +124,8 @@ pub struct Sweep<'a, const D: usize, S: Scheme<D, f64>> {
     pub last: bool,
     /// Time at the end of the step.
     pub time: f64,
+    /// Is the lower, the upper end of each axis a way out? Not where the ends are joined.
+    pub exits: [[bool; 2]; D],
 }
 
 impl<const D: usize, S: Scheme<D, f64>> Sweep<'_, D, S> {
@@ -153,6 +155,7 @@ impl<const D: usize, S: Scheme<D, f64>> Sweep<'_, D, S> {
         maps: Option<&mut Maps>,
         tallies: &mut [Tally],
     ) {
+        const { assert!(<S::State as Parts<f64>>::COUNT <= MOST_PARTS) };
         let mut parts = to.parts.iter_mut();
         let sheets: [Option<Sheet>; MOST_PARTS] =
             std::array::from_fn(|_| parts.next().map(|values| Sheet::new(values)));
@@ -300,6 +303,9 @@ impl<const D: usize, S: Scheme<D, f64>> Sweep<'_, D, S> {
             let lambda = self.dt * self.spacing.per[axis];
             for (side, flux) in [(0, &faces[axis].lo), (1, &faces[axis].hi)] {
                 let ends = index[axis] == if side == 0 { 0 } else { cells[axis] - 1 };
+                if ends && !self.exits[axis][side] {
+                    continue;
+                }
                 let step = self.layout.step(axis);
                 let there = if side == 0 { place - step } else { place + step };
                 if !(ends || self.scheme.outside(&self.cell(there).ground)) {

@@ -13,9 +13,12 @@ pub fn fill<const D: usize, P: Parts<f64>>(
 ) {
     for axis in 0..D {
         let last = grid.cells[axis] as isize - 1;
-        let across = if axis == 0 { layout.rows } else { layout.columns } as isize;
+        // The second axis takes the ghosts of the first along: a corner has neighbours too.
+        let ghosts = GHOSTS as isize;
+        let across =
+            if axis == 0 { 0..layout.rows as isize } else { -ghosts..layout.columns as isize + ghosts };
         let place = |i: isize, j: isize| if axis == 0 { layout.place(i, j) } else { layout.place(j, i) };
-        for ghost in 0..GHOSTS as isize {
+        for ghost in 0..ghosts {
             for (side, target) in [(0, -1 - ghost), (1, last + 1 + ghost)] {
                 let edge = if side == 0 { 0 } else { last };
                 let inward = if side == 0 { edge + ghost } else { edge - ghost };
@@ -24,7 +27,7 @@ pub fn fill<const D: usize, P: Parts<f64>>(
                     Boundary::Wall => inward,
                     Boundary::Periodic => last - inward, // -1 - k is last - k, last + 1 + k is k
                 };
-                for j in 0..across {
+                for j in across.clone() {
                     let value: P = field.get(place(source, j));
                     let value = match grid.boundary[axis][side] {
                         Boundary::Wall => mirror(axis, value),

@@ -43,8 +43,8 @@
 //! | [`savage_hutter::kinetic`] | the five published schemes, Verfahren 1 to 5, as five constants |
 //! | [`savage_hutter::balanced`] | the default scheme: conservative, positive, exactly resting; first and second order |
 //! | [`savage_hutter::exact`] | exact solutions to measure schemes by |
-//! | [`grid`], [`field`], [`boundary`], [`limiter`], [`time`] | cells, arrays, ghost cells, limited slopes, Runge-Kutta weights |
-//! | [`backend`], [`simulation`], [`observe`] | the sweep over tiles on all threads; fields, clock and ledger; maps of peaks and times |
+//! | [`grid`], `field`, `boundary`, [`limiter`], [`time`] | cells, arrays, ghost cells, limited slopes, Runge-Kutta weights |
+//! | `backend`, [`simulation`], `observe` | the sweep over tiles on all threads; fields, clock and ledger; maps of peaks and times |
 //! | [`raster`], [`terrain`], [`release`] | GeoTIFF and ESRI ASCII, the bed's slope and curvature, what is released |
 //! | [`case`] | the case file, from TOML to numbers, with errors that name line and key |
 //! | [`output`] | the files of a run, one module per format |
@@ -52,13 +52,13 @@
 //! The pages under `docs/` of the repository hold the equations, the schemes, the errata of the papers, the case file
 //! and the output files; `ARCHITECTURE.md` and `CONTRIBUTING.md` say how it is built and how to extend it.
 
-pub mod backend;
-pub mod boundary;
+mod backend;
+mod boundary;
 pub mod case;
-pub mod field;
+mod field;
 pub mod grid;
 pub mod limiter;
-pub mod observe;
+mod observe;
 pub mod output;
 pub mod raster;
 pub mod real;

@@ -159,6 +159,16 @@ pub fn dot<const D: usize, R: Real>(a: [R; D], b: [R; D]) -> R {
     sum
 }
 
+/// The largest of a few numbers.
+#[inline(always)]
+pub fn largest<const D: usize, R: Real>(values: [R; D]) -> R {
+    let mut most = values[0];
+    for axis in 1..D {
+        most = most.max(values[axis]);
+    }
+    most
+}
+
 #[cfg(test)]
 mod tests {
     use super::Real;

@@ -151,7 +151,7 @@ where
     S::Ground: Bed<D, f64>,
 {
     fn start<'a>(work: Work<'a>, mut simulation: Simulation<D, S>) -> Result<Run<'a, D, S>, RunError> {
-        simulation.maps = Some(Maps::new(simulation.layout()));
+        simulation.keep_maps();
         let plane = Plane::of(
             work.scene,
             &simulation.grid().origin,
@@ -316,7 +316,8 @@ where
             return Some(StopReason::Interrupted);
         }
         if time.until.is_some() {
-            if simulation.at_rest() {
+            // Where no cell could send a signal (nothing but films), nothing will ever move.
+            if simulation.at_rest() || simulation.rate() == 0.0 {
                 return Some(StopReason::AtRest);
             }
             if let Some(limit) = time.rest_speed

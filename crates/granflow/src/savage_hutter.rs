@@ -91,7 +91,8 @@ impl<const D: usize, R: Real> Flow<D, R> {
     }
 }
 
-impl<const D: usize, R: Real> Parts<R> for Flow<D, R> {
+// SAFETY: the parts are numbered below COUNT.
+unsafe impl<const D: usize, R: Real> Parts<R> for Flow<D, R> {
     const COUNT: usize = 1 + D;
     #[inline(always)]
     fn gather(part: impl Fn(usize) -> R) -> Self {

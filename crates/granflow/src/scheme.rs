@@ -3,7 +3,10 @@
 use crate::real::Real;
 
 /// A value of a cell that is stored as a few numbers, one array each (struct of arrays).
-pub trait Parts<R: Real>: Copy + Send + Sync + 'static {
+///
+/// # Safety
+/// `gather` asks for, and `scatter` hands out, only parts below `COUNT`: the inner loop reads them unchecked.
+pub unsafe trait Parts<R: Real>: Copy + Send + Sync + 'static {
     /// How many numbers.
     const COUNT: usize;
     /// Gather the value from its numbers.
@@ -122,7 +125,8 @@ pub trait Scheme<const D: usize, R: Real>: Send + Sync {
     fn outside(&self, ground: &Self::Ground) -> R::Mask;
     /// Volume per time and face length that the cell on `side` books as leaving it to the other side.
     fn booked(&self, flux: &Self::Flux, side: Side) -> R;
-    /// Pull of the mass if it were at rest, as a share of the static bound: up to 1 it stays; 0 where dry.
+    /// Pull of the mass if it were at rest, as a share of the static bound: up to 1 it stays; 0 where dry and where
+    /// nothing holds.
     fn margin(&self, near: &Near<D, R, Self::State, Self::Ground>) -> R;
     /// What the run keeps watch of in a cell.
     fn watch(&self, here: &Cell<Self::State, Self::Ground>) -> Watch<R>;

@@ -229,7 +229,7 @@ impl<const D: usize, S: Scheme<D, f64>> Simulation<D, S> {
     pub fn collect<T>(&self, value: impl Fn(&Cell<S::State, S::Ground>) -> T) -> Vec<T> {
         (0..self.grid.count()).map(|number| value(&self.cell(self.grid.index(number)))).collect()
     }
-    /// Volume that has left by each of [`EXITS`] since the start.
+    /// Volume that has left by the left, right, bottom and top end and into nodata since the start.
     pub fn out(&self) -> [f64; 5] {
         self.out.map(|sum| sum.value() * self.grid.measure())
     }
@@ -267,6 +267,21 @@ impl<const D: usize, S: Scheme<D, f64>> Simulation<D, S> {
             wet,
             moving,
         }
+    }
+
+    /// Keep summary maps from now on, beginning with the state as it stands.
+    pub fn keep_maps(&mut self) {
+        let mut maps = Maps::new(&self.layout);
+        for number in 0..self.grid.count() {
+            let index = self.grid.index(number);
+            let (place, watch) = (self.place(index), self.watch(index));
+            maps.peak_thickness[place] = watch.thickness;
+            maps.peak_speed[place] = watch.speed;
+            if watch.volume > 0.0 && watch.film == 0.0 {
+                maps.arrival_time[place] = self.time;
+            }
+        }
+        self.maps = Some(maps);
     }
 
     /// Rates and counts of the state as it stands (needed once, before the first step or after a restart).
@@ -319,7 +334,8 @@ impl<const D: usize, S: Scheme<D, f64>> Simulation<D, S> {
         let wanted = self.wanted_step();
         let left = until - self.time;
         // A rest of the way that only rounding left over is part of the last step.
-        let last = wanted * (1.0 + 1e-9) >= left;
+        let rounding = if self.is_adaptive() { 0.0 } else { 1e-9 };
+        let last = wanted * (1.0 + rounding) >= left;
         let (dt, time) = if last { (left, until) } else { (wanted, self.time + wanted) };
         let advances = time > self.time && dt.is_finite();
         if !advances {
@@ -340,6 +356,7 @@ impl<const D: usize, S: Scheme<D, f64>> Simulation<D, S> {
                 keep,
                 last,
                 time,
+                exits: self.grid.boundary.map(|ends| ends.map(|end| end != Boundary::Periodic)),
             };
             let maps = if last { self.maps.as_mut() } else { None };
             sweep.run(&self.tiles, &self.awake, &mut self.next, maps, &mut self.found);

@@ -2,11 +2,9 @@
 
 mod support;
 
-use granflow::observe::Maps;
 use granflow::savage_hutter::Flow;
 use granflow::scheme::Boundary;
 use std::alloc::{GlobalAlloc, Layout, System};
-use std::sync::Barrier;
 use std::sync::atomic::{AtomicU64, Ordering};
 use support::{ORDERS, grid, on_plane, plane, steps};
 
@@ -37,26 +35,23 @@ fn steps_allocate_nothing_after_the_first() {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("threads");
         for order in ORDERS {
             let bytes = pool.install(|| {
-                if threads == 2 {
-                    // A thread sets up its own tools when it first takes work from another: let both do so.
-                    let (one, two) = (Barrier::new(2), Barrier::new(2));
-                    let back = || {
-                        one.wait();
-                        rayon::join(|| two.wait(), || two.wait());
-                    };
-                    rayon::join(|| one.wait(), back);
-                }
                 let sheet = grid([120, 90], [0.0; 2], 0.1, Boundary::Open);
                 let pile = |[x, y]: [f64; 2]| Flow::still((1.0 - (x - 6.0).hypot(y - 4.0)).max(0.0));
                 let mut run =
                     on_plane(order, (0.3, 1e-6), order.courant(), sheet, plane([0.2, 0.1], 0.4), pile);
-                run.maps = Some(Maps::new(run.layout()));
+                run.keep_maps();
                 steps(&mut run, 1);
-                let before = BYTES.load(Ordering::Relaxed);
-                steps(&mut run, 200);
-                BYTES.load(Ordering::Relaxed) - before
+                // A thread of the pool sets up its own tools when it first takes work from another, once in its
+                // life and whenever the system lets it: at most one of these spells may see that for each thread.
+                let mut spell = || {
+                    let before = BYTES.load(Ordering::Relaxed);
+                    steps(&mut run, 60);
+                    BYTES.load(Ordering::Relaxed) - before
+                };
+                (0..=threads).map(|_| spell()).collect::<Vec<_>>()
             });
-            assert_eq!(bytes, 0, "{order:?} on {threads} threads");
+            let spoilt = bytes.iter().filter(|bytes| **bytes > 0).count();
+            assert!(spoilt < threads + usize::from(threads > 1), "{order:?} on {threads} threads: {bytes:?}");
         }
     }
 }

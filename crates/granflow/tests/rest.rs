@@ -446,3 +446,59 @@ fn the_static_bound_is_a_disc_in_the_metric() {
         }
     }
 }
+
+/// The pressure correction of a bent bed must not keep a cell from resting between held ones.
+#[test]
+fn a_release_in_a_bowl_comes_to_rest_by_itself() {
+    for order in ORDERS {
+        let sheet = grid([61, 61], [0.0; 2], 5.0, Boundary::Nothing);
+        let bowl = |[x, y]: [f64; 2]| {
+            let (dx, dy) = (x - 220.0, y - 150.0);
+            Some(Surface {
+                z: 1000.0 + 0.004 * dx * dx + 0.002 * dy * dy,
+                slope: [0.008 * dx, 0.004 * dy],
+                bent: [[0.008, 0.0], [0.0, 0.004]],
+            })
+        };
+        let grounds = terrain(&sheet, bowl);
+        let start = |[x, y]: [f64; 2], _: &Terrain<2, f64>| {
+            Flow::still(if (x - 80.0).hypot(y - 170.0) < 30.0 { 2.0 } else { 0.0 })
+        };
+        let mut run = run(order, (0.2, FILM), order.courant(), sheet, &grounds, start);
+        let before = run.totals().volume;
+        alone(|| {
+            while !run.at_rest() && run.time() < 600.0 {
+                run.advance(600.0).unwrap();
+            }
+        });
+        let totals = run.totals();
+        assert!(run.at_rest(), "{order:?}: {} cells at up to {:e}", totals.moving, totals.speed);
+        assert_eq!(totals.speed, 0.0);
+        assert!(lost(&run, before).abs() < 1e-12);
+    }
+}
+
+/// Joined ends: where the pile lies does not matter, not even in a corner.
+#[test]
+fn a_pile_in_the_corner_of_a_periodic_plane_is_the_one_in_the_middle() {
+    for order in ORDERS {
+        let sheet = grid([20, 20], [0.0; 2], 0.1, Boundary::Periodic);
+        let flow = |shift: usize| {
+            let wrap = |x: f64| (x - 1.0 + 0.1 * shift as f64 + 1.0).rem_euclid(2.0) - 1.0;
+            let pile = |[x, y]: [f64; 2]| Flow::still((0.8 - wrap(x).hypot(wrap(y))).max(0.0) + 0.1);
+            let mut run = on_plane(order, (0.5, FILM), order.courant(), sheet, plane([0.3, 0.1], 0.4), pile);
+            let before = run.totals().volume;
+            alone(|| steps(&mut run, 150));
+            assert!((run.totals().volume / before - 1.0).abs() < 1e-13, "{order:?} {shift}");
+            assert_eq!(run.out(), [0.0; 5]);
+            run
+        };
+        let (middle, corner) = (flow(0), flow(10));
+        for number in 0..sheet.count() {
+            let [i, j] = sheet.index(number);
+            let there = [(i + 10) % 20, (j + 10) % 20];
+            let (a, b) = (middle.state([i, j]), corner.state(there));
+            assert!((a.h - b.h).abs() < 1e-12, "{order:?} {i} {j}: {} {}", a.h, b.h);
+        }
+    }
+}

@@ -9,7 +9,7 @@ use super::friction::Friction;
 use super::ground::{Bed, Towards};
 use super::{Flow, normal};
 use crate::limiter;
-use crate::real::Real;
+use crate::real::{Real, largest};
 use crate::scheme::{Cell, Faces, Near, Scheme, Side, Spacing, Watch};
 use std::marker::PhantomData;
 
@@ -106,6 +106,8 @@ struct Seen<const D: usize, R> {
     rise: R,
     /// Rise by thickness, for the pressure's cross terms.
     weight: R,
+    /// This face's half of the cell's [`Bed::bend`]: it mends the pressure in the flux, and goes with it.
+    bend: R,
 }
 
 impl<const D: usize, R: Real> Seen<D, R> {
@@ -116,6 +118,7 @@ impl<const D: usize, R: Real> Seen<D, R> {
             momentum: [R::zero(); D],
             rise: R::select(whole, edge.rise, edge.rise - edge.weight),
             weight: R::select(whole, R::zero(), edge.weight),
+            bend: R::select(whole, R::zero(), R::of(0.5)),
         }
     }
 }
@@ -237,7 +240,7 @@ impl<F: Friction, const D: usize, R: Real, B: Bed<D, R>> Scheme<D, R> for Balanc
             return Edges::closed(ground, void);
         }
         let Stance { rise, weight, pull, holding } = self.stance(near);
-        let bound = holding * R::of(Self::SLACK) + ground.rounding(state.h, per[0]);
+        let bound = holding * R::of(Self::SLACK) + ground.rounding(state.h, largest(per));
         let settled = ground.square(pull).le(bound * bound) & state.is_still() & !void;
         let mut held = settled;
         // A symmetric tower pulls nowhere, yet falls: bound the drop towards each neighbour too.
@@ -372,7 +375,7 @@ impl<F: Friction, const D: usize, R: Real, B: Bed<D, R>> Scheme<D, R> for Balanc
         let pull = bed.pull(rise[0], rise[1], per);
         let cross = bed.cross(weight[0], weight[1], per);
         for k in 0..D {
-            let bend = R::select(edges.held, zero, bed.bend(k) * h);
+            let bend = bed.bend(k) * h * (faces[k].lo.right.bend + faces[k].hi.left.bend);
             moved[k] = moved[k] + dt * depth * (pull[k] + cross[k] + bend);
         }
 
@@ -382,13 +385,13 @@ impl<F: Friction, const D: usize, R: Real, B: Bed<D, R>> Scheme<D, R> for Balanc
         let law = self.friction.resistance(thickness, speed, bed.load(old), bed.weight_at_rest());
         let still = here.state.is_still();
         let slack = R::of(Self::SLACK);
-        let resting = law.holding * slack + bed.rounding(h, per[0]);
-        let dry = R::select(edges.held, resting, R::select(still, law.holding, law.dry));
+        let resting = law.holding * slack + bed.rounding(h, largest(per));
+        let dry = R::select(still, resting, law.dry);
         let size = bed.square(moved).sqrt();
         let loss = dt * depth * dry;
         let left = size - loss;
         // Slower than before, and within a step not by the last place of its depth: it has stopped.
-        let spent = left.le(speed * h) & (left * dt * per[0]).le(R::of(1e-15) * new);
+        let spent = left.le(speed * h) & (left * dt * largest(per)).le(R::of(1e-15) * new);
         let stops = left.le(zero) | spent | new.lt(R::of(self.film)) | new.le(zero);
         let safe = R::select(stops, R::of(1.0), size);
         // v + dt drag v^2 = left/h, solved for v: the part that grows with the square, implicitly.
@@ -448,7 +451,9 @@ impl<F: Friction, const D: usize, R: Real, B: Bed<D, R>> Scheme<D, R> for Balanc
     fn margin(&self, near: &Near<D, R, Flow<D, R>, B>) -> R {
         let Stance { pull, holding, .. } = self.stance(near);
         let void = self.is_void(near.here.state.h, &near.here.ground);
-        R::select(void, R::zero(), near.here.ground.square(pull).sqrt() / holding)
+        let none = void | holding.le(R::zero());
+        let share = near.here.ground.square(pull).sqrt() / R::select(none, R::of(1.0), holding);
+        R::select(none, R::zero(), share)
     }
     #[inline(always)]
     fn watch(&self, here: &Cell<Flow<D, R>, B>) -> Watch<R> {

@@ -74,7 +74,8 @@ pub struct Chute<const D: usize, R> {
     pub curvature: R,
 }
 
-impl<const D: usize, R: Real> Parts<R> for Chute<D, R> {
+// SAFETY: the parts are numbered below COUNT.
+unsafe impl<const D: usize, R: Real> Parts<R> for Chute<D, R> {
     const COUNT: usize = D + 3;
     #[inline(always)]
     fn gather(part: impl Fn(usize) -> R) -> Self {
@@ -248,7 +249,8 @@ impl Terrain<2, f64> {
     }
 }
 
-impl<const D: usize, R: Real> Parts<R> for Terrain<D, R> {
+// SAFETY: the parts are numbered below COUNT.
+unsafe impl<const D: usize, R: Real> Parts<R> for Terrain<D, R> {
     const COUNT: usize = 3 + 2 * D + D * (D + 1) / 2;
     #[inline(always)]
     fn gather(part: impl Fn(usize) -> R) -> Self {

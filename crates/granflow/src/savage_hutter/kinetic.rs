@@ -258,7 +258,8 @@ impl<const D: usize, R: Real> Scheme<D, R> for Kinetic {
         let Cell { state, ground } = near.here;
         let excess = self.reconstruct(near).excess;
         let bound = self.friction.resistance(state.h, R::zero(), ground.cos, ground.cos).holding;
-        R::select(state.h.le(R::zero()), R::zero(), dot(excess, excess).sqrt() / bound)
+        let none = state.h.le(R::zero()) | bound.le(R::zero());
+        R::select(none, R::zero(), dot(excess, excess).sqrt() / R::select(none, R::of(1.0), bound))
     }
     #[inline(always)]
     fn watch(&self, here: &Cell<Flow<D, R>, Chute<D, R>>) -> Watch<R> {
