@@ -93,7 +93,7 @@ impl From<RunError> for Failure {
             RunError::Setup(error) => error.into(),
             RunError::Output(error) => Self::File(error.to_string()),
             RunError::Computation { .. } => Self::Computation(error.to_string()),
-            RunError::Threads(message) => Self::usage(message, "try a smaller --threads"),
+            RunError::Threads(_) => Self::usage(error.to_string(), "try a smaller --threads"),
             RunError::Resume { .. } => Self::File(error.to_string()),
         }
     }

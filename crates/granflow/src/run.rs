@@ -22,6 +22,8 @@ use std::time::Instant;
 
 /// Ledger lines between two frames.
 const LINES: f64 = 10.0;
+/// More threads than this only wait for each other.
+const MOST_THREADS: usize = 1024;
 /// Seconds on the clock between two checkpoints.
 const CHECKPOINT: f64 = 30.0;
 /// The series are joined into `result.nc` again once this many times the last join's cost has passed.
@@ -73,7 +75,7 @@ pub enum RunError {
         saved: PathBuf,
     },
     /// The threads could not be started.
-    #[error("cannot start the threads: {0}; try a smaller --threads")]
+    #[error("cannot start the threads: {0}")]
     Threads(String),
     /// The folder holds no checkpoint of this case.
     #[error("cannot resume from {}: {problem}; run without --resume to start anew", directory.display())]
@@ -97,6 +99,9 @@ pub fn run(
     report: &mut (dyn FnMut(&Status) + Send),
 ) -> Result<Finished, RunError> {
     let clock = Instant::now();
+    if options.threads > MOST_THREADS {
+        return Err(RunError::Threads(format!("{} are more than {MOST_THREADS}", options.threads)));
+    }
     let scene = Scene::load(case)?;
     let pool = rayon::ThreadPoolBuilder::new()
         .num_threads(options.threads)
@@ -163,11 +168,16 @@ where
         let initial = simulation.totals().volume;
         if work.options.resume {
             let saved = checkpoint_in(directory);
+            if !saved.exists() {
+                let problem = format!("there is no checkpoint {}", saved.display());
+                return Err(RunError::Resume { directory: directory.clone(), problem });
+            }
             let checkpoint = Checkpoint::read(&saved, &case_hash(&work.case.text()))?;
             let (mut frames, _torn) = Frames::open(&frame_file)?;
             let mut ledger = Ledger::open(&ledger_file)?;
-            frames.truncate_to(checkpoint.time)?;
-            ledger.truncate_to(checkpoint.time)?;
+            let kept = |name: &str| checkpoint.scalar(name).unwrap_or(checkpoint.time);
+            frames.truncate_to(kept("last_frame"))?;
+            ledger.truncate_to(kept("last_line"))?;
             if let Some(problem) = restore(&mut simulation, &checkpoint) {
                 return Err(RunError::Resume { directory: directory.clone(), problem });
             }
@@ -267,10 +277,11 @@ where
             }
             self.after_step()?;
         };
+        let due = self.written();
         if self.frames.times().last() != Some(&self.simulation.time()) {
             self.frame()?;
         }
-        self.checkpoint()?;
+        self.checkpoint(due)?;
         let finished = self.finish(reason)?;
         finished.write_result(&self.work.options.command)?;
         finished.summary.write(&finished.directory.join("summary.json"))?;
@@ -304,7 +315,7 @@ where
             }
         }
         if self.saved.elapsed().as_secs_f64() > CHECKPOINT {
-            self.checkpoint()?;
+            self.checkpoint(self.written())?;
         }
         Ok(())
     }
@@ -350,6 +361,9 @@ where
     }
 
     fn line(&mut self) -> Result<(), RunError> {
+        if self.written()[1] == self.simulation.time() {
+            return Ok(());
+        }
         let totals = self.simulation.totals();
         let out = self.simulation.out();
         let gone: f64 = output::ledger::sum(out);
@@ -392,7 +406,15 @@ where
         self.line()
     }
 
-    fn checkpoint(&mut self) -> Result<(), RunError> {
+    /// Times of the last frame and of the last ledger line.
+    fn written(&self) -> [f64; 2] {
+        let line = self.ledger.entries().last().map(|entry| entry.time);
+        [self.frames.times().last().copied(), line].map(|time| time.unwrap_or(f64::NEG_INFINITY))
+    }
+
+    /// Save what goes on from here. `due` are the times of the last frame and line that an unbroken run has too: the
+    /// frame at which an interrupted run ends goes when it is resumed.
+    fn checkpoint(&mut self, due: [f64; 2]) -> Result<(), RunError> {
         let simulation = &self.simulation;
         let mut scalars: Vec<(String, f64)> = vec![
             ("peak_speed".into(), self.peak_speed),
@@ -400,6 +422,8 @@ where
             ("initial".into(), self.initial),
             ("next_frame".into(), self.next_frame),
             ("next_line".into(), self.next_line),
+            ("last_frame".into(), due[0]),
+            ("last_line".into(), due[1]),
         ];
         scalars.extend(simulation.clock().iter().enumerate().map(|(k, v)| (format!("clock_{k}"), *v)));
         let state = simulation.arrays().parts.iter().enumerate();

@@ -16,6 +16,9 @@ use crate::simulation::{Simulation, StepSize};
 use crate::terrain::{Curvature, Terrain};
 use crate::time::{EULER, SSP_RK2};
 
+/// More cells than any machine holds.
+const MOST_CELLS: f64 = (1_u64 << 36) as f64;
+
 /// Why a case could not be set up.
 #[derive(Debug, thiserror::Error)]
 pub enum SetupError {
@@ -128,8 +131,23 @@ impl Scene {
             None => None,
         };
         let mut bed = Raster::read_in(&case.resolve(&terrain.dem), crs.as_ref())?;
+        let [width, height] = [bed.columns, bed.rows].map(|count| count as f64 * bed.cell);
         if let Some(cell) = terrain.cell {
+            let [columns, rows] = [width / cell, height / cell];
+            if columns < 3.0 || rows < 3.0 || columns * rows > MOST_CELLS {
+                let message = format!(
+                    "cells of {cell} m cut the terrain of {width} m x {height} m into {columns:.1} x {rows:.1}"
+                );
+                let cure = "allowed are at least 3 along each side, and not more than a machine holds";
+                return Err(case.fault("terrain.cell", message, cure).into());
+            }
             bed = bed.resample(cell);
+        }
+        if let Some(length) = terrain.curvature.length().filter(|length| *length > width.min(height)) {
+            let message =
+                format!("a window of {length} m is wider than the terrain of {width} m x {height} m");
+            let cure = "the window spans a few cells, for instance length = \"20 m\"";
+            return Err(case.fault("terrain.curvature.length", message, cure).into());
         }
         let curvature = terrain.curvature.length().map_or(Curvature::Off, Curvature::Length);
         let terrain = Terrain::new(bed, curvature);

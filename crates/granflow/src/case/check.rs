@@ -2,7 +2,7 @@
 
 use super::fault::CaseError;
 use super::grid::{Axis, Grid, Side};
-use super::material::Friction;
+use super::material::{EarthPressure, Friction};
 use super::slope::Slope;
 use super::{Case, Quantity};
 
@@ -120,6 +120,13 @@ impl Case {
                         );
                         return fault(&format!("material.{key}"), &message, "remove it");
                     }
+                }
+                if self.material.earth_pressure != EarthPressure::Isotropic {
+                    return fault(
+                        "material.earth_pressure",
+                        "on terrain the earth pressure is isotropic in this version",
+                        "remove it, or write earth_pressure = \"isotropic\"",
+                    );
                 }
                 Ok(())
             }

@@ -143,3 +143,12 @@ mod any_text {
         }
     }
 }
+
+#[test]
+fn an_earth_pressure_on_terrain_is_refused_not_ignored() {
+    let text = "[terrain]\ndem = \"a.asc\"\n[material]\ndensity = 200.0\nfriction.coulomb = { mu = 0.4 }\n\
+                earth_pressure = \"kaland\"\n[[release]]\ncap = { height = 1.0, centre = [0.0, 0.0], radius = 5.0 }\n\
+                [time]\nend = 1.0\n";
+    let error = Case::parse(text, "case.toml").and_then(|case| case.check()).unwrap_err();
+    assert!(error.headline().contains("material.earth_pressure"), "{}", error.headline());
+}
