@@ -75,8 +75,8 @@ pub struct Edges<const D: usize, R: Real, B> {
     held: R::Mask,
     /// Dry, or a film, or outside: takes what comes, gives nothing.
     void: R::Mask,
-    /// At rest with its pull within the static bound, whatever the drops: only a change beside it moves it.
-    settled: R::Mask,
+    /// q = 0.
+    still: R::Mask,
 }
 
 impl<const D: usize, R: Real, B> Edges<D, R, B> {
@@ -85,7 +85,7 @@ impl<const D: usize, R: Real, B> Edges<D, R, B> {
     fn closed(bed: B, void: R::Mask) -> Self {
         let never = R::zero().lt(R::zero());
         let edges = [Edge::closed(); D];
-        Edges { lo: edges, hi: edges, bed, held: never, settled: never, void }
+        Edges { lo: edges, hi: edges, bed, held: never, still: void, void }
     }
 }
 
@@ -241,8 +241,8 @@ impl<F: Friction, const D: usize, R: Real, B: Bed<D, R>> Scheme<D, R> for Balanc
         }
         let Stance { rise, weight, pull, holding } = self.stance(near);
         let bound = holding * R::of(Self::SLACK) + ground.rounding(state.h, largest(per));
-        let settled = ground.square(pull).le(bound * bound) & state.is_still() & !void;
-        let mut held = settled;
+        let still = state.is_still();
+        let mut held = ground.square(pull).le(bound * bound) & still & !void;
         // A symmetric tower pulls nowhere, yet falls: bound the drop towards each neighbour too.
         for axis in 0..D {
             let drop = bound * near.spacing.size[axis] * ground.stretch(axis);
@@ -251,7 +251,7 @@ impl<F: Friction, const D: usize, R: Real, B: Bed<D, R>> Scheme<D, R> for Balanc
             }
         }
 
-        let mut edges = Edges { held, settled, ..Edges::closed(ground, void) };
+        let mut edges = Edges { held, still, ..Edges::closed(ground, void) };
         for axis in 0..D {
             (edges.lo[axis].rise, edges.hi[axis].rise) = (rise[axis][0], rise[axis][1]);
             (edges.lo[axis].weight, edges.hi[axis].weight) = (weight[axis][0], weight[axis][1]);
@@ -434,11 +434,12 @@ impl<F: Friction, const D: usize, R: Real, B: Bed<D, R>> Scheme<D, R> for Balanc
             q: std::array::from_fn(|k| R::select(stopped, R::zero(), keep * old.q[k] + give * new.q[k])),
         }
     }
-    /// Void, or at rest with the pull within the bound. Not only held cells: where the surface bends, a cell may drop to
-    /// one neighbour by more than friction holds and stay all the same, for held neighbours take nothing from it.
+    /// q = 0: a cell that a step leaves at rest and unchanged, every later step leaves so. Not only held cells: where the
+    /// surface or the bed bends, the pull by central differences may exceed the bound, or the drop to one neighbour,
+    /// while the forces through the faces do not, and held neighbours take nothing from it.
     #[inline(always)]
     fn rests(&self, edges: &Edges<D, R, B>) -> R::Mask {
-        edges.settled | edges.void
+        edges.still | edges.void
     }
     #[inline(always)]
     fn outside(&self, ground: &B) -> R::Mask {
