@@ -115,15 +115,6 @@ impl Scene {
     }
 
     fn mountain(case: &Case, terrain: &case::Terrain) -> Result<Scene, SetupError> {
-        if case.material.earth_pressure != case::EarthPressure::Isotropic {
-            return Err(case
-                .fault(
-                    "material.earth_pressure",
-                    "on terrain the earth pressure is isotropic (k = 1), found \"kaland\"",
-                    "leave earth_pressure out, or run the case on a grid",
-                )
-                .into());
-        }
         let crs = match &terrain.crs {
             Some(text) => Some(Crs::parse(text).map_err(|error| {
                 case.fault("terrain.crs", error.to_string(), "write it as crs = \"EPSG:31287\"")
