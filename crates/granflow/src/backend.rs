@@ -7,7 +7,7 @@
 use crate::field::{Field, View};
 use crate::grid::Layout;
 use crate::observe::Maps;
-use crate::scheme::{Cell, Faces, Near, Parts, Scheme, Side, Spacing};
+use crate::scheme::{Cell, Faces, Near, Parts, Scheme, Side, Spacing, Watch};
 use rayon::prelude::*;
 use std::marker::PhantomData;
 
@@ -67,6 +67,18 @@ impl Tally {
         quiet: true,
         finite: true,
     };
+
+    /// Take a cell into account: its rate and what the scheme watches in it.
+    #[inline(always)]
+    pub(crate) fn count(&mut self, rate: f64, watch: &Watch<f64>) {
+        self.rate = if self.rate < rate { rate } else { self.rate };
+        self.speed = if self.speed < watch.speed { watch.speed } else { self.speed };
+        self.energy += watch.energy;
+        self.volume += watch.volume;
+        self.film += watch.volume * watch.film;
+        self.wet += usize::from(watch.volume > 0.0);
+        self.moving += usize::from(watch.speed > 0.0);
+    }
 }
 
 /// Arrays that several threads write in disjoint places.
@@ -270,13 +282,7 @@ impl<const D: usize, S: Scheme<D, f64>> Sweep<'_, D, S> {
     ) {
         let rate = self.scheme.rate(&cell, &self.spacing);
         let watch = self.scheme.watch(&cell);
-        tally.rate = if tally.rate < rate { rate } else { tally.rate };
-        tally.speed = if tally.speed < watch.speed { watch.speed } else { tally.speed };
-        tally.energy += watch.energy;
-        tally.volume += watch.volume;
-        tally.film += watch.volume * watch.film;
-        tally.wet += usize::from(watch.volume > 0.0);
-        tally.moving += usize::from(watch.speed > 0.0);
+        tally.count(rate, &watch);
         if let Some([thickness, speed, arrival, stop]) = maps {
             // SAFETY: the cell belongs to this tile alone.
             unsafe {

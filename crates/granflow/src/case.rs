@@ -44,12 +44,13 @@ mod terrain;
 mod time;
 mod units;
 
+pub use crate::output::Precision;
 pub use fault::{CaseError, CaseErrorKind, nearest};
 pub use formula::{Formula, FormulaError};
 pub use grid::{Axis, AxisSides, Boundary, Grid, Side, SidePair};
 pub use initial::{Cap, Centre, Cone, Initial, Parabola, Quantity, Shape, Steps};
 pub use material::{Cohesion, Coulomb, EarthPressure, Friction, Material, Samosat, Voellmy};
-pub use output::{FileKind, Frames, Output, Precision};
+pub use output::{FileKind, Frames, Output};
 pub use scheme::{Scheme, SchemeName, Stepping};
 pub use slope::{Chute, Profile, Slope};
 pub use source::Source;

@@ -157,7 +157,9 @@ pub fn remove_leftovers(folder: &Path) -> Result<usize, Error> {
 }
 
 /// How many bits a number of a result file keeps.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, serde::Serialize, serde::Deserialize)]
+#[derive(
+    Debug, Clone, Copy, PartialEq, Eq, Default, serde::Serialize, serde::Deserialize, schemars::JsonSchema,
+)]
 #[serde(rename_all = "lowercase")]
 pub enum Precision {
     /// 32 bits, about 7 digits.

@@ -169,6 +169,38 @@ pub fn largest<const D: usize, R: Real>(values: [R; D]) -> R {
     most
 }
 
+/// A sum that keeps what rounding drops (Neumaier 1974).
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Sum {
+    high: f64,
+    low: f64,
+}
+
+impl Sum {
+    /// Add a number.
+    pub fn add(&mut self, value: f64) {
+        let sum = self.high + value;
+        self.low += if self.high.abs() >= value.abs() {
+            (self.high - sum) + value
+        } else {
+            (value - sum) + self.high
+        };
+        self.high = sum;
+    }
+    /// The sum.
+    pub fn value(&self) -> f64 {
+        if self.high.is_finite() { self.high + self.low } else { self.high }
+    }
+    /// The two numbers that make it, for a checkpoint.
+    pub fn parts(&self) -> [f64; 2] {
+        [self.high, self.low]
+    }
+    /// From [`Sum::parts`].
+    pub fn from_parts([high, low]: [f64; 2]) -> Sum {
+        Sum { high, low }
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::Real;

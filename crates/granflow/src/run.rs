@@ -4,11 +4,11 @@ use crate::backend::EXITS;
 use crate::case::{self, Case};
 use crate::field::Field;
 use crate::observe::Maps;
+use crate::output;
 use crate::output::checkpoint::{Checkpoint, case_hash};
 use crate::output::frames::{self, Frames};
 use crate::output::ledger::{Entry, Ledger};
 use crate::output::summary::{StopReason, Summary};
-use crate::output::{self, Precision};
 use crate::results::{Finished, Plane};
 use crate::savage_hutter::Flow;
 use crate::savage_hutter::ground::Bed;
@@ -191,14 +191,10 @@ where
             return Ok(run);
         }
         output::remove_leftovers(directory)?;
-        let precision = match work.case.precision() {
-            case::Precision::F32 => Precision::F32,
-            case::Precision::F64 => Precision::F64,
-        };
         let length = simulation.grid().count();
         let field = |name: &&str| frames::Field { name: (*name).to_owned(), length };
         let fields = plane.series().iter().map(field).collect();
-        let frames = Frames::create(&frame_file, precision, fields)?;
+        let frames = Frames::create(&frame_file, work.case.precision(), fields)?;
         let ledger = Ledger::create(&ledger_file)?;
         let mut run = Run::new(work, simulation, plane, frames, ledger, initial);
         run.peak_speed = run.simulation.speed();

@@ -5,6 +5,7 @@ use crate::boundary;
 use crate::field::Field;
 use crate::grid::{Grid, Layout};
 use crate::observe::Maps;
+use crate::real::Sum;
 use crate::scheme::{Boundary, Cell, Near, Scheme, Spacing, Watch};
 use crate::time::Stages;
 
@@ -15,38 +16,6 @@ pub enum StepSize {
     Fixed(f64),
     /// dt = courant / max over cells of sum over axes of (|u| + sqrt(2 beta h))/dx.
     Courant(f64),
-}
-
-/// A sum that keeps what rounding drops (Neumaier 1974).
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Sum {
-    high: f64,
-    low: f64,
-}
-
-impl Sum {
-    /// Add a number.
-    pub fn add(&mut self, value: f64) {
-        let sum = self.high + value;
-        self.low += if self.high.abs() >= value.abs() {
-            (self.high - sum) + value
-        } else {
-            (value - sum) + self.high
-        };
-        self.high = sum;
-    }
-    /// The sum.
-    pub fn value(&self) -> f64 {
-        self.high + self.low
-    }
-    /// The two numbers that make it, for a checkpoint.
-    pub fn parts(&self) -> [f64; 2] {
-        [self.high, self.low]
-    }
-    /// From [`Sum::parts`].
-    pub fn from_parts([high, low]: [f64; 2]) -> Sum {
-        Sum { high, low }
-    }
 }
 
 /// Why a step could not be taken.
@@ -295,14 +264,7 @@ impl<const D: usize, S: Scheme<D, f64>> Simulation<D, S> {
                     if self.scheme.outside(&cell.ground) {
                         continue;
                     }
-                    let watch = self.scheme.watch(&cell);
-                    tally.rate = tally.rate.max(self.scheme.rate(&cell, &self.spacing));
-                    tally.speed = tally.speed.max(watch.speed);
-                    tally.energy += watch.energy;
-                    tally.volume += watch.volume;
-                    tally.film += watch.volume * watch.film;
-                    tally.wet += usize::from(watch.volume > 0.0);
-                    tally.moving += usize::from(watch.speed > 0.0);
+                    tally.count(self.scheme.rate(&cell, &self.spacing), &self.scheme.watch(&cell));
                 }
             }
         }

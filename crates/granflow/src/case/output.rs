@@ -1,5 +1,6 @@
 //! `[output]`: which files, how many instants, how many digits.
 
+use crate::output::Precision;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -64,16 +65,6 @@ impl FileKind {
     pub fn needs_terrain(self) -> bool {
         matches!(self, Self::Geotiff | Self::Vector | Self::Report)
     }
-}
-
-/// Precision of the numbers in the files.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
-#[serde(rename_all = "snake_case")]
-pub enum Precision {
-    /// 4 bytes a number.
-    F32,
-    /// 8 bytes a number.
-    F64,
 }
 
 /// When the state is written; the first and the last instant always are.
