@@ -7,11 +7,11 @@
 use crate::field::{Field, View};
 use crate::grid::Layout;
 use crate::observe::Maps;
-use crate::scheme::{Cell, Faces, Near, Parts, Scheme, Side, Spacing, Watch};
+use crate::scheme::{Cell, Faces, Parts, Scheme, Side, Spacing, Watch, Window};
 use rayon::prelude::*;
 use std::marker::PhantomData;
 
-/// Largest extent of a tile along x and y. At least 4, the reach of a two-stage step.
+/// Largest extent of a tile along x and y. At least 6, the reach of a two-stage step.
 pub const TILE: [usize; 2] = [16, 8];
 
 /// The five ways out of the domain, as the ledger books them.
@@ -47,6 +47,8 @@ pub struct Tally {
     pub moving: usize,
     /// Volume per cell measure and time that left by each of [`EXITS`], times dt.
     pub out: [f64; 5],
+    /// Largest change of each part of the state in the step.
+    pub change: [f64; MOST_PARTS],
     /// Every cell rested and none changed.
     pub quiet: bool,
     /// Every number is finite.
@@ -64,6 +66,7 @@ impl Tally {
         wet: 0,
         moving: 0,
         out: [0.0; 5],
+        change: [0.0; MOST_PARTS],
         quiet: true,
         finite: true,
     };
@@ -114,7 +117,7 @@ impl<'a> Sheet<'a> {
 }
 
 /// Most numbers a state has (h and two momenta).
-const MOST_PARTS: usize = 3;
+pub const MOST_PARTS: usize = 3;
 
 /// Everything a tile needs to compute one stage.
 pub struct Sweep<'a, const D: usize, S: Scheme<D, f64>> {
@@ -140,6 +143,23 @@ pub struct Sweep<'a, const D: usize, S: Scheme<D, f64>> {
     pub exits: [[bool; 2]; D],
 }
 
+/// The cells around one of the tile.
+struct Around<'a, const D: usize, S: Scheme<D, f64>> {
+    sweep: &'a Sweep<'a, D, S>,
+    place: usize,
+}
+
+impl<const D: usize, S: Scheme<D, f64>> Window<D, f64, S::State, S::Ground> for Around<'_, D, S> {
+    #[inline(always)]
+    fn at(&self, offset: [isize; D]) -> Cell<S::State, S::Ground> {
+        self.sweep.cell(self.sweep.layout.moved(self.place, offset))
+    }
+    #[inline(always)]
+    fn spacing(&self) -> &Spacing<D, f64> {
+        &self.sweep.spacing
+    }
+}
+
 impl<const D: usize, S: Scheme<D, f64>> Sweep<'_, D, S> {
     #[inline(always)]
     fn cell(&self, place: usize) -> Cell<S::State, S::Ground> {
@@ -149,13 +169,7 @@ impl<const D: usize, S: Scheme<D, f64>> Sweep<'_, D, S> {
 
     #[inline(always)]
     fn edges(&self, place: usize) -> S::Edges {
-        let here = self.cell(place);
-        let (mut lo, mut hi) = ([here; D], [here; D]);
-        for axis in 0..D {
-            lo[axis] = self.cell(place - self.layout.step(axis));
-            hi[axis] = self.cell(place + self.layout.step(axis));
-        }
-        self.scheme.reconstruct(&Near { here, lo, hi, spacing: self.spacing })
+        self.scheme.reconstruct(&Around { sweep: self, place })
     }
 
     /// Compute the tiles numbered in `awake`, write `to` (and `maps` in the last stage), leave a tally each.
@@ -200,6 +214,14 @@ impl<const D: usize, S: Scheme<D, f64>> Sweep<'_, D, S> {
                 below[k] = self.scheme.flux(D - 1, &rows[1][k + 1], &rows[0][k + 1]);
             }
         }
+        let corners = |low: &[S::Edges], high: &[S::Edges], found: &mut [S::Corner]| {
+            for (k, corner) in found.iter_mut().enumerate() {
+                *corner = self.scheme.corner([[&low[k], &low[k + 1]], [&high[k], &high[k + 1]]]);
+            }
+        };
+        let void = self.scheme.corner([[&seed; 2]; 2]);
+        let (mut low, mut high) = ([void; TILE[0] + 1], [void; TILE[0] + 1]);
+        corners(&rows[if D > 1 { 1 } else { 0 }], &rows[0], &mut low[..=width]);
         let mut tally = Tally::NONE;
         for j in tile.rows[0]..tile.rows[1] {
             let (even, odd) = rows.split_at_mut(1);
@@ -211,6 +233,7 @@ impl<const D: usize, S: Scheme<D, f64>> Sweep<'_, D, S> {
             if D > 1 {
                 fill(above, j + 1);
             }
+            corners(row, if D > 1 { above } else { row }, &mut high[..=width]);
             let mut left = self.scheme.flux(0, &row[0], &row[1]);
             for k in 0..width {
                 let right = self.scheme.flux(0, &row[k + 1], &row[k + 2]);
@@ -226,36 +249,58 @@ impl<const D: usize, S: Scheme<D, f64>> Sweep<'_, D, S> {
                 if self.scheme.outside(&here.ground) {
                     continue;
                 }
-                let new = self.scheme.update(&here, &row[k + 1], &faces, &self.spacing, self.dt);
+                let corners = [[low[k], low[k + 1]], [high[k], high[k + 1]]];
+                let new = self.scheme.update(&here, &row[k + 1], &faces, &corners, &self.spacing, self.dt);
                 // SAFETY: every cell belongs to one tile and every tile to one thread.
-                let new = unsafe { self.store(place, new, to) };
+                let (old, new) = unsafe { self.store(place, new, &here.state, to) };
                 self.judge(&mut tally, &here, new, &row[k + 1]);
                 if self.last {
+                    Self::compare(&mut tally, old, new);
                     self.watch(&mut tally, Cell { state: new, ground: here.ground }, place, maps);
                 }
                 if tile.rim {
                     self.book(&mut tally, [i0 + k, j as usize], &faces, place);
                 }
             }
+            std::mem::swap(&mut low, &mut high);
         }
         tally
     }
 
+    /// Average `new` with what the step began with, if the stage does, and write it; returns both.
+    ///
     /// # Safety
     /// `place` belongs to this thread.
     #[inline(always)]
-    unsafe fn store(&self, place: usize, new: S::State, to: &[Option<Sheet>; MOST_PARTS]) -> S::State {
+    unsafe fn store(
+        &self,
+        place: usize,
+        new: S::State,
+        from: &S::State,
+        to: &[Option<Sheet>; MOST_PARTS],
+    ) -> (S::State, S::State) {
         let sheet = |k: usize| to[k].as_ref().expect("a state has as many sheets as parts");
-        let new = if self.keep > 0.0 {
+        let (old, new) = if self.keep > 0.0 {
             // SAFETY: as the caller promises.
             let old = S::State::gather(|k| unsafe { sheet(k).get(place) });
-            self.scheme.average(self.keep, &old, &new)
+            (old, self.scheme.average(self.keep, &old, &new))
         } else {
-            new
+            (*from, new)
         };
         // SAFETY: as the caller promises.
         new.scatter(|k, value| unsafe { sheet(k).put(place, value) });
-        new
+        (old, new)
+    }
+
+    /// Keep the largest change of each part.
+    #[inline(always)]
+    fn compare(tally: &mut Tally, old: S::State, new: S::State) {
+        let mut before = [0.0; MOST_PARTS];
+        old.scatter(|k, value| before[k] = value);
+        new.scatter(|k, value| {
+            let change = (value - before[k]).abs();
+            tally.change[k] = if tally.change[k] < change { change } else { tally.change[k] };
+        });
     }
 
     /// Does the cell rest, unchanged and finite?
@@ -314,15 +359,16 @@ impl<const D: usize, S: Scheme<D, f64>> Sweep<'_, D, S> {
                 }
                 let step = self.layout.step(axis);
                 let there = if side == 0 { place - step } else { place + step };
-                if !(ends || self.scheme.outside(&self.cell(there).ground)) {
-                    continue;
-                }
+                let way = 2 * axis + side;
+                let (here, there) = (self.cell(place).ground, self.cell(there).ground);
+                let exit = if ends { Some(way) } else { self.scheme.exit(&here, &there, way) };
+                let Some(exit) = exit else { continue };
                 let leaves = if side == 0 {
                     -self.scheme.booked(flux, Side::Right)
                 } else {
                     self.scheme.booked(flux, Side::Left)
                 };
-                tally.out[if ends { 2 * axis + side } else { 4 }] += lambda * leaves;
+                tally.out[exit] += lambda * leaves;
             }
         }
     }

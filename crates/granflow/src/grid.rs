@@ -39,8 +39,8 @@ impl<const D: usize> Grid<D> {
     }
 }
 
-/// Ghost cells at each end of each axis: a face needs the edges of two cells, an edge the cell's neighbours.
-pub const GHOSTS: usize = 2;
+/// Ghost cells at each end of each axis: a face needs the edges of two cells, an edge the cells within its reach.
+pub const GHOSTS: usize = 1 + crate::scheme::REACH;
 
 /// Rows of the padded arrays: x fastest, ghosts included; one row in one dimension.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -74,10 +74,19 @@ impl Layout {
     pub fn is_empty(&self) -> bool {
         false
     }
-    /// Place of the cell in column `i`, row `j`; ghosts have indices -1, -2 and columns, columns + 1.
+    /// Place of the cell in column `i`, row `j`; ghosts have indices -1, -2, ... and columns, columns + 1, ...
     #[inline(always)]
     pub fn place(&self, i: isize, j: isize) -> usize {
         ((j + self.margin as isize) as usize) * self.stride + (i + GHOSTS as isize) as usize
+    }
+    /// Place of the cell `offset` cells away along each axis.
+    #[inline(always)]
+    pub fn moved<const D: usize>(&self, place: usize, offset: [isize; D]) -> usize {
+        let mut place = place as isize;
+        for axis in 0..D {
+            place += offset[axis] * self.step(axis) as isize;
+        }
+        place as usize
     }
     /// Distance in memory of neighbours along `axis`.
     #[inline(always)]

@@ -14,7 +14,7 @@ use crate::savage_hutter::Flow;
 use crate::savage_hutter::ground::Bed;
 use crate::scheme::Scheme;
 use crate::setup::{Scene, SetupError, Visit};
-use crate::simulation::{Failure, Simulation};
+use crate::simulation::{CLOCK, Failure, Simulation};
 use std::borrow::Cow;
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -521,7 +521,7 @@ where
     S: Scheme<D, f64, State = Flow<D, f64>>,
 {
     let clock: Vec<f64> =
-        (0..3 + 2 * EXITS.len()).map_while(|k| saved.scalar(&format!("clock_{k}"))).collect();
+        (0..CLOCK).map_while(|k| saved.scalar(&format!("clock_{k}"))).collect();
     let part = |k: usize| saved.array(&format!("state_{k}")).map(<[f64]>::to_vec);
     let parts: Vec<Vec<f64>> = (0..=D).map_while(part).collect();
     if !simulation.restore(&clock, Field { parts }) {

@@ -1,4 +1,4 @@
-//! A scheme is three pointwise functions; arrays, axes, threads and files live elsewhere.
+//! A scheme is a few pointwise functions; arrays, axes, threads and files live elsewhere.
 
 use crate::real::Real;
 
@@ -53,6 +53,32 @@ pub struct Near<const D: usize, R, S, G> {
     pub spacing: Spacing<D, R>,
 }
 
+/// The neighbourhood of a cell, read where a scheme asks.
+pub trait Window<const D: usize, R: Real, S: Copy, G: Copy> {
+    /// The cell `offset` cells away along each axis, at most [`REACH`].
+    fn at(&self, offset: [isize; D]) -> Cell<S, G>;
+    /// Cell sizes.
+    fn spacing(&self) -> &Spacing<D, R>;
+
+    /// The cell with its neighbours along each axis.
+    #[inline(always)]
+    fn cross(&self) -> Near<D, R, S, G> {
+        let here = self.at([0; D]);
+        let (mut lo, mut hi) = ([here; D], [here; D]);
+        for axis in 0..D {
+            let mut step = [0; D];
+            step[axis] = 1;
+            hi[axis] = self.at(step);
+            step[axis] = -1;
+            lo[axis] = self.at(step);
+        }
+        Near { here, lo, hi, spacing: *self.spacing() }
+    }
+}
+
+/// How far along each axis [`Scheme::reconstruct`] sees.
+pub const REACH: usize = 2;
+
 /// What passes a cell's two faces of one axis.
 #[derive(Clone, Copy, Debug)]
 pub struct Faces<F> {
@@ -84,9 +110,10 @@ pub enum Boundary {
     Nothing,
 }
 
-/// A finite-volume scheme: U -> E_dt(U), written for one cell and one face.
-/// `reconstruct` sees a cell and its cross of neighbours, `flux` the edges of two cells, `update` a cell with
-/// what passes its faces. A Runge-Kutta method is a convex combination of such maps ([`crate::time`]).
+/// A finite-volume scheme: U -> E_dt(U), written for one cell, one face and one corner.
+/// `reconstruct` sees a cell and its neighbours, `flux` the edges of two cells, `corner` those of the cells around a
+/// corner, `update` a cell with what its faces and corners found. A Runge-Kutta method is a convex combination of such
+/// maps ([`crate::time`]).
 pub trait Scheme<const D: usize, R: Real>: Send + Sync {
     /// The unknowns of a cell.
     type State: Parts<R>;
@@ -96,17 +123,23 @@ pub trait Scheme<const D: usize, R: Real>: Send + Sync {
     type Edges: Copy + Send + Sync;
     /// What passes a face, seen from both sides.
     type Flux: Copy + Send + Sync;
+    /// What is found at a corner of cells; `()` where a scheme needs none.
+    type Corner: Copy + Send + Sync;
 
-    /// What cell `near.here` offers to its faces.
-    fn reconstruct(&self, near: &Near<D, R, Self::State, Self::Ground>) -> Self::Edges;
+    /// What the cell in the middle of the window offers to its faces and corners.
+    fn reconstruct(&self, window: &impl Window<D, R, Self::State, Self::Ground>) -> Self::Edges;
     /// What passes the face between `left` and `right` along `axis`.
     fn flux(&self, axis: usize, left: &Self::Edges, right: &Self::Edges) -> Self::Flux;
-    /// The state after `dt`.
+    /// What is found at a corner: `around[y][x]` are the cells below and above it, left and right of it; in one dimension
+    /// the corner is the face, and both rows are the same.
+    fn corner(&self, around: [[&Self::Edges; 2]; 2]) -> Self::Corner;
+    /// The state after `dt`; `corners[y][x]` are the cell's lower and upper ones, left and right.
     fn update(
         &self,
         here: &Cell<Self::State, Self::Ground>,
         edges: &Self::Edges,
         faces: &[Faces<Self::Flux>; D],
+        corners: &[[Self::Corner; 2]; 2],
         spacing: &Spacing<D, R>,
         dt: R,
     ) -> Self::State;
@@ -121,13 +154,22 @@ pub trait Scheme<const D: usize, R: Real>: Send + Sync {
     fn average(&self, keep: R, old: &Self::State, new: &Self::State) -> Self::State;
     /// The cell rests by a proof of the scheme (or is dry): with neighbours at rest nothing will change here.
     fn rests(&self, edges: &Self::Edges) -> R::Mask;
-    /// The cell lies outside the data: what enters it has left.
+    /// The cell lies outside the data and holds nothing that is computed.
     fn outside(&self, ground: &Self::Ground) -> R::Mask;
+    /// Under which of the five exits the books put what passes from `here` to `there`, `way` being the one on that side;
+    /// none where it stays in the domain.
+    fn exit(&self, _here: &Self::Ground, there: &Self::Ground, _way: usize) -> Option<usize> {
+        R::any(self.outside(there)).then_some(4)
+    }
+    /// Volume per time and area that is poured on a cell.
+    fn supply(&self, _ground: &Self::Ground) -> R {
+        R::zero()
+    }
     /// Volume per time and face length that the cell on `side` books as leaving it to the other side.
     fn booked(&self, flux: &Self::Flux, side: Side) -> R;
     /// Pull of the mass if it were at rest, as a share of the static bound: up to 1 it stays; 0 where dry and where
     /// nothing holds.
-    fn margin(&self, near: &Near<D, R, Self::State, Self::Ground>) -> R;
+    fn margin(&self, window: &impl Window<D, R, Self::State, Self::Ground>) -> R;
     /// What the run keeps watch of in a cell.
     fn watch(&self, here: &Cell<Self::State, Self::Ground>) -> Watch<R>;
 }

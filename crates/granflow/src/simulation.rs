@@ -1,12 +1,12 @@
 //! A run in memory: fields, clock, tiles and ledger.
 
-use crate::backend::{EXITS, Sweep, TILE, Tally, Tile};
+use crate::backend::{EXITS, MOST_PARTS, Sweep, TILE, Tally, Tile};
 use crate::boundary;
 use crate::field::Field;
 use crate::grid::{Grid, Layout};
 use crate::observe::Maps;
 use crate::real::Sum;
-use crate::scheme::{Boundary, Cell, Near, Scheme, Spacing, Watch};
+use crate::scheme::{Boundary, Cell, Scheme, Spacing, Watch, Window};
 use crate::time::Stages;
 
 /// How long a step is.
@@ -83,6 +83,29 @@ pub struct Simulation<const D: usize, S: Scheme<D, f64>> {
     step: u64,
     updates: u64,
     out: [Sum; 5],
+    /// Volume per time that is poured in now, and what has been poured in.
+    supply: f64,
+    poured: Sum,
+    last_dt: f64,
+}
+
+/// How many numbers [`Simulation::clock`] has.
+pub(crate) const CLOCK: usize = 3 + 2 * EXITS.len() + 3;
+
+/// The cells around one, outside a sweep.
+struct Around<'a, const D: usize, S: Scheme<D, f64>> {
+    simulation: &'a Simulation<D, S>,
+    place: usize,
+}
+
+impl<const D: usize, S: Scheme<D, f64>> Window<D, f64, S::State, S::Ground> for Around<'_, D, S> {
+    fn at(&self, offset: [isize; D]) -> Cell<S::State, S::Ground> {
+        let place = self.simulation.layout.moved(self.place, offset);
+        Cell { state: self.simulation.now.get(place), ground: self.simulation.grounds.get(place) }
+    }
+    fn spacing(&self) -> &Spacing<D, f64> {
+        &self.simulation.spacing
+    }
 }
 
 impl<const D: usize, S: Scheme<D, f64>> Simulation<D, S> {
@@ -118,6 +141,9 @@ impl<const D: usize, S: Scheme<D, f64>> Simulation<D, S> {
             step: 0,
             updates: 0,
             out: [Sum::default(); 5],
+            supply: 0.0,
+            poured: Sum::default(),
+            last_dt: 0.0,
             scheme,
             grid,
             layout,
@@ -127,8 +153,32 @@ impl<const D: usize, S: Scheme<D, f64>> Simulation<D, S> {
             tiles,
             across,
         };
+        simulation.supply = simulation.supplied();
         simulation.survey();
         simulation
+    }
+
+    /// Volume per time that the grounds pour in.
+    fn supplied(&self) -> f64 {
+        let mut sum = Sum::default();
+        for number in 0..self.grid.count() {
+            sum.add(self.scheme.supply(&self.ground(self.grid.index(number))));
+        }
+        sum.value() * self.grid.measure()
+    }
+
+    /// Give every cell the ground that `change` makes of its index and its present one, and wake all.
+    pub fn change_grounds(&mut self, change: impl Fn([usize; D], S::Ground) -> S::Ground) {
+        for number in 0..self.grid.count() {
+            let index = self.grid.index(number);
+            let place = self.place(index);
+            let ground = self.grounds.get(place);
+            self.grounds.set(place, change(index, ground));
+        }
+        let (grid, layout, scheme) = (&self.grid, &self.layout, &self.scheme);
+        boundary::fill(&mut self.grounds, grid, layout, |axis, g| scheme.mirror_ground(axis, &g));
+        self.supply = self.supplied();
+        self.wake_all();
     }
 
     fn place_in(layout: &Layout, index: [usize; D]) -> usize {
@@ -181,16 +231,11 @@ impl<const D: usize, S: Scheme<D, f64>> Simulation<D, S> {
     /// Pull as a share of the static bound, [`Scheme::margin`], in every cell, x fastest.
     pub fn margins(&mut self) -> Vec<f64> {
         boundary::fill(&mut self.now, &self.grid, &self.layout, |axis, s| self.scheme.mirror(axis, &s));
-        let cell = |place: usize| Cell { state: self.now.get(place), ground: self.grounds.get(place) };
         let margin = |number: usize| {
-            let place = self.place(self.grid.index(number));
-            let here: Cell<S::State, S::Ground> = cell(place);
-            if self.scheme.outside(&here.ground) {
-                return 0.0;
-            }
-            let lo = std::array::from_fn(|axis| cell(place - self.layout.step(axis)));
-            let hi = std::array::from_fn(|axis| cell(place + self.layout.step(axis)));
-            self.scheme.margin(&Near { here, lo, hi, spacing: self.spacing })
+            let index = self.grid.index(number);
+            let outside = self.scheme.outside(&self.ground(index));
+            let around = Around { simulation: self, place: self.place(index) };
+            if outside { 0.0 } else { self.scheme.margin(&around) }
         };
         (0..self.grid.count()).map(margin).collect()
     }
@@ -201,6 +246,25 @@ impl<const D: usize, S: Scheme<D, f64>> Simulation<D, S> {
     /// Volume that has left by the left, right, bottom and top end and into nodata since the start.
     pub fn out(&self) -> [f64; 5] {
         self.out.map(|sum| sum.value() * self.grid.measure())
+    }
+
+    /// Volume that has been poured in since the start.
+    pub fn poured(&self) -> f64 {
+        self.poured.value()
+    }
+    /// Volume per time that is poured in now.
+    pub fn supply(&self) -> f64 {
+        self.supply
+    }
+    /// max over cells of |change of each part of the state|/dt in the last step; infinite before the first.
+    pub fn drift(&self) -> [f64; MOST_PARTS] {
+        let mut most = [0.0_f64; MOST_PARTS];
+        for tally in &self.tallies {
+            for (most, change) in most.iter_mut().zip(tally.change) {
+                *most = most.max(change);
+            }
+        }
+        most.map(|change| if self.last_dt > 0.0 { change / self.last_dt } else { f64::INFINITY })
     }
 
     /// Every cell rests by the scheme's own proof and the last step changed nothing: nothing ever will.
@@ -256,7 +320,8 @@ impl<const D: usize, S: Scheme<D, f64>> Simulation<D, S> {
     /// Rates and counts of the state as it stands (needed once, before the first step or after a restart).
     fn survey(&mut self) {
         for (tile, tally) in self.tiles.iter().zip(&mut self.tallies) {
-            *tally = Tally::NONE;
+            // Nothing is known of the change before the next step.
+            *tally = Tally { change: [f64::INFINITY; MOST_PARTS], ..Tally::NONE };
             for j in tile.rows[0]..tile.rows[1] {
                 for i in tile.columns[0]..tile.columns[1] {
                     let place = self.layout.place(i as isize, j as isize);
@@ -335,6 +400,8 @@ impl<const D: usize, S: Scheme<D, f64>> Simulation<D, S> {
         }
         self.time = time;
         self.step += 1;
+        self.last_dt = dt;
+        self.poured.add(dt * self.supply);
         for (sum, part) in self.out.iter_mut().zip(out) {
             sum.add(part);
         }
@@ -381,6 +448,8 @@ impl<const D: usize, S: Scheme<D, f64>> Simulation<D, S> {
     pub fn clock(&self) -> Vec<f64> {
         let mut numbers = vec![self.time, self.step as f64, self.updates as f64];
         numbers.extend(self.out.iter().flat_map(|sum| sum.parts()));
+        numbers.extend(self.poured.parts());
+        numbers.push(self.last_dt);
         numbers
     }
     /// The state arrays, padded, for a checkpoint.
@@ -389,7 +458,7 @@ impl<const D: usize, S: Scheme<D, f64>> Simulation<D, S> {
     }
     /// Take up a run from [`Simulation::clock`] and [`Simulation::arrays`]; false where the sizes do not fit.
     pub fn restore(&mut self, clock: &[f64], arrays: Field) -> bool {
-        let fits = clock.len() == 3 + 2 * EXITS.len()
+        let fits = clock.len() == CLOCK
             && arrays.parts.len() == self.now.parts.len()
             && arrays.parts.iter().all(|part| part.len() == self.layout.len());
         if fits {
@@ -399,6 +468,9 @@ impl<const D: usize, S: Scheme<D, f64>> Simulation<D, S> {
             for (k, sum) in self.out.iter_mut().enumerate() {
                 *sum = Sum::from_parts([clock[3 + 2 * k], clock[4 + 2 * k]]);
             }
+            let end = 3 + 2 * EXITS.len();
+            self.poured = Sum::from_parts([clock[end], clock[end + 1]]);
+            self.last_dt = clock[end + 2];
             self.now = arrays;
             self.next = self.now.clone();
             self.quiet.fill(false);

@@ -10,7 +10,7 @@ use super::ground::{Bed, Towards};
 use super::{Flow, normal};
 use crate::limiter;
 use crate::real::{Real, largest};
-use crate::scheme::{Cell, Faces, Near, Scheme, Side, Spacing, Watch};
+use crate::scheme::{Cell, Faces, Near, Scheme, Side, Spacing, Watch, Window};
 use std::marker::PhantomData;
 
 /// The default scheme: friction law, thinnest moving depth, order of accuracy.
@@ -222,9 +222,11 @@ impl<F: Friction, const D: usize, R: Real, B: Bed<D, R>> Scheme<D, R> for Balanc
     type Ground = B;
     type Edges = Edges<D, R, B>;
     type Flux = Flux<D, R>;
+    type Corner = ();
 
     #[inline(always)]
-    fn reconstruct(&self, near: &Near<D, R, Flow<D, R>, B>) -> Edges<D, R, B> {
+    fn reconstruct(&self, window: &impl Window<D, R, Flow<D, R>, B>) -> Edges<D, R, B> {
+        let near = window.cross();
         let Cell { state, ground } = near.here;
         let (per, zero) = (near.spacing.per, R::zero());
         let u = state.velocity();
@@ -239,7 +241,7 @@ impl<F: Friction, const D: usize, R: Real, B: Bed<D, R>> Scheme<D, R> for Balanc
         if !R::any(!bare) {
             return Edges::closed(ground, void);
         }
-        let Stance { rise, weight, pull, holding } = self.stance(near);
+        let Stance { rise, weight, pull, holding } = self.stance(&near);
         let bound = holding * R::of(Self::SLACK) + ground.rounding(state.h, largest(per));
         let still = state.is_still();
         let mut held = ground.square(pull).le(bound * bound) & still & !void;
@@ -332,11 +334,14 @@ impl<F: Friction, const D: usize, R: Real, B: Bed<D, R>> Scheme<D, R> for Balanc
     }
 
     #[inline(always)]
+    fn corner(&self, _around: [[&Edges<D, R, B>; 2]; 2]) {}
+    #[inline(always)]
     fn update(
         &self,
         here: &Cell<Flow<D, R>, B>,
         edges: &Edges<D, R, B>,
         faces: &[Faces<Flux<D, R>>; D],
+        _corners: &[[(); 2]; 2],
         spacing: &Spacing<D, R>,
         dt: R,
     ) -> Flow<D, R> {
@@ -449,8 +454,9 @@ impl<F: Friction, const D: usize, R: Real, B: Bed<D, R>> Scheme<D, R> for Balanc
     fn booked(&self, flux: &Flux<D, R>, _side: Side) -> R {
         flux.mass
     }
-    fn margin(&self, near: &Near<D, R, Flow<D, R>, B>) -> R {
-        let Stance { pull, holding, .. } = self.stance(near);
+    fn margin(&self, window: &impl Window<D, R, Flow<D, R>, B>) -> R {
+        let near = window.cross();
+        let Stance { pull, holding, .. } = self.stance(&near);
         let void = self.is_void(near.here.state.h, &near.here.ground);
         let none = void | holding.le(R::zero());
         let share = near.here.ground.square(pull).sqrt() / R::select(none, R::of(1.0), holding);

@@ -9,7 +9,7 @@ use super::friction::{Coulomb, Friction};
 use super::ground::{Bed, Chute, Towards};
 use super::{Flow, normal};
 use crate::real::{Real, dot};
-use crate::scheme::{Cell, Faces, Near, Scheme, Side, Spacing, Watch};
+use crate::scheme::{Cell, Faces, Scheme, Side, Spacing, Watch, Window};
 
 /// The depth that enters the half moments at a face.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -123,9 +123,11 @@ impl<const D: usize, R: Real> Scheme<D, R> for Kinetic {
     type Ground = Chute<D, R>;
     type Edges = Edges<D, R>;
     type Flux = Flux<D, R>;
+    type Corner = ();
 
     #[inline(always)]
-    fn reconstruct(&self, near: &Near<D, R, Flow<D, R>, Chute<D, R>>) -> Edges<D, R> {
+    fn reconstruct(&self, window: &impl Window<D, R, Flow<D, R>, Chute<D, R>>) -> Edges<D, R> {
+        let near = window.cross();
         let Cell { state, ground } = near.here;
         let lo: [R; D] = std::array::from_fn(|k| near.lo[k].state.h);
         let hi: [R; D] = std::array::from_fn(|k| near.hi[k].state.h);
@@ -156,11 +158,14 @@ impl<const D: usize, R: Real> Scheme<D, R> for Kinetic {
     }
 
     #[inline(always)]
+    fn corner(&self, _around: [[&Edges<D, R>; 2]; 2]) {}
+    #[inline(always)]
     fn update(
         &self,
         here: &Cell<Flow<D, R>, Chute<D, R>>,
         edges: &Edges<D, R>,
         faces: &[Faces<Flux<D, R>>; D],
+        _corners: &[[(); 2]; 2],
         spacing: &Spacing<D, R>,
         dt: R,
     ) -> Flow<D, R> {
@@ -254,9 +259,10 @@ impl<const D: usize, R: Real> Scheme<D, R> for Kinetic {
     fn booked(&self, flux: &Flux<D, R>, _side: Side) -> R {
         flux.moving.h
     }
-    fn margin(&self, near: &Near<D, R, Flow<D, R>, Chute<D, R>>) -> R {
+    fn margin(&self, window: &impl Window<D, R, Flow<D, R>, Chute<D, R>>) -> R {
+        let near = window.cross();
         let Cell { state, ground } = near.here;
-        let excess = self.reconstruct(near).excess;
+        let excess = self.reconstruct(window).excess;
         let bound = self.friction.resistance(state.h, R::zero(), ground.cos, ground.cos).holding;
         let none = state.h.le(R::zero()) | bound.le(R::zero());
         R::select(none, R::zero(), dot(excess, excess).sqrt() / R::select(none, R::of(1.0), bound))
