@@ -57,6 +57,7 @@ mod boundary;
 pub mod case;
 mod field;
 pub mod grid;
+pub mod hadeler_kuttler;
 pub mod limiter;
 mod observe;
 pub mod output;

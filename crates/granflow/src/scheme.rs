@@ -150,6 +150,10 @@ pub trait Scheme<const D: usize, R: Real>: Send + Sync {
     fn mirror_ground(&self, axis: usize, ground: &Self::Ground) -> Self::Ground;
     /// sum over axes of (fastest signal)/dx: the Courant condition is dt times this <= courant. \[1/time\]
     fn rate(&self, here: &Cell<Self::State, Self::Ground>, spacing: &Spacing<D, R>) -> R;
+    /// The largest Courant number with which a fixed step is taken.
+    fn most_courant(&self) -> f64 {
+        f64::INFINITY
+    }
     /// keep * old + (1 - keep) * new, without undoing an exact stop of `new`.
     fn average(&self, keep: R, old: &Self::State, new: &Self::State) -> Self::State;
     /// The cell rests by a proof of the scheme (or is dry): with neighbours at rest nothing will change here.

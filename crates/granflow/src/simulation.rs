@@ -31,6 +31,22 @@ pub enum Failure {
         /// Time reached.
         time: f64,
     },
+    /// A fixed step is too long for the state as it has become.
+    #[error(
+        "the fixed step {dt:e} is too long at step {step}, time {time}: its Courant number is {courant:.3}, the scheme takes up to {most}; set a smaller scheme.step, or scheme.courant for an adaptive one"
+    )]
+    TooLong {
+        /// Steps done.
+        step: u64,
+        /// Time reached.
+        time: f64,
+        /// The step.
+        dt: f64,
+        /// Its Courant number.
+        courant: f64,
+        /// The largest allowed.
+        most: f64,
+    },
     /// The step became too small to advance the clock.
     #[error("the step collapsed to {dt:e} at step {step}, time {time}: some speed has grown without bound")]
     Collapsed {
@@ -367,6 +383,10 @@ impl<const D: usize, S: Scheme<D, f64>> Simulation<D, S> {
         let advances = time > self.time && dt.is_finite();
         if !advances {
             return Err(Failure::Collapsed { step: self.step, time: self.time, dt });
+        }
+        let (courant, most) = (dt * self.rate(), self.scheme.most_courant());
+        if courant > most * (1.0 + 1e-9) {
+            return Err(Failure::TooLong { step: self.step, time: self.time, dt, courant, most });
         }
         self.wake();
         let mut out = [0.0; 5];

@@ -9,7 +9,7 @@ use granflow::savage_hutter::ground::{Bed, Chute, Terrain};
 use granflow::savage_hutter::kinetic::{
     Kinetic, VERFAHREN_1, VERFAHREN_2, VERFAHREN_3, VERFAHREN_4, VERFAHREN_5,
 };
-use granflow::scheme::{Boundary, Cell, Faces, Near, Scheme, Spacing};
+use granflow::scheme::{Boundary, Cell, Faces, Scheme, Spacing, Window};
 use granflow::simulation::{Simulation, StepSize};
 use granflow::time::{EULER, SSP_RK2, Stages};
 use proptest::prelude::*;
@@ -69,6 +69,21 @@ fn stays_positive(name: &str) -> bool {
     matches!(name, "verfahren_1" | "balanced" | "balanced_2")
 }
 
+/// A cell among its likes.
+struct Alike<const D: usize, S, G> {
+    here: Cell<S, G>,
+    spacing: Spacing<D, f64>,
+}
+
+impl<const D: usize, S: Copy, G: Copy> Window<D, f64, S, G> for Alike<D, S, G> {
+    fn at(&self, _offset: [isize; D]) -> Cell<S, G> {
+        self.here
+    }
+    fn spacing(&self) -> &Spacing<D, f64> {
+        &self.spacing
+    }
+}
+
 struct Consistency;
 
 impl Consistency {
@@ -80,18 +95,17 @@ impl Consistency {
         axis: usize,
     ) -> Flow<D, f64> {
         let spacing = Spacing::new([1.0; D]);
-        let near = |state| {
-            let here = Cell { state, ground };
-            Near { here, lo: [here; D], hi: [here; D], spacing }
-        };
-        let (wet, dry) = (scheme.reconstruct(&near(state)), scheme.reconstruct(&near(Flow::still(0.0))));
+        let around = |state| Alike { here: Cell { state, ground }, spacing };
+        let (wet, dry) = (scheme.reconstruct(&around(state)), scheme.reconstruct(&around(Flow::still(0.0))));
+        let corners = [[scheme.corner([[&wet; 2]; 2]); 2]; 2];
         let idle: [Faces<S::Flux>; D] =
             std::array::from_fn(|k| Faces { lo: scheme.flux(k, &dry, &dry), hi: scheme.flux(k, &dry, &dry) });
         let mut faces = idle;
         faces[axis].hi = scheme.flux(axis, &wet, &wet);
         let dt = 0.125;
-        let without = scheme.update(&near(state).here, &wet, &idle, &spacing, dt);
-        let with = scheme.update(&near(state).here, &wet, &faces, &spacing, dt);
+        let here = Cell { state, ground };
+        let without = scheme.update(&here, &wet, &idle, &corners, &spacing, dt);
+        let with = scheme.update(&here, &wet, &faces, &corners, &spacing, dt);
         Flow { h: (without.h - with.h) / dt, q: std::array::from_fn(|k| (without.q[k] - with.q[k]) / dt) }
     }
 

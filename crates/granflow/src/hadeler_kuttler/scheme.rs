@@ -67,7 +67,7 @@ impl<R: Real> Linear<R> {
 
 /// What a cell offers to its faces and corners.
 #[derive(Clone, Copy, Debug)]
-pub struct Edges<const D: usize, R> {
+pub struct Edges<const D: usize, R: Real> {
     /// Rolling layer, along each axis.
     v: [Linear<R>; D],
     /// Slope of the surface in the cell, along each axis.
@@ -90,10 +90,7 @@ impl HadelerKuttler {
     fn constant<const D: usize, R: Real>(
         window: &impl Window<D, R, Pile<R>, Ground<D, R>>,
         offset: [isize; D],
-    ) -> Edges<D, R>
-    where
-        R: Real,
-    {
+    ) -> Edges<D, R> {
         let Cell { state, ground } = window.at(offset);
         let Spacing { size, per } = window.spacing();
         let surface = |step: [isize; D]| {
@@ -166,47 +163,32 @@ impl HadelerKuttler {
     /// E of a cell (eq. 37): what the first-order scheme would change in it and at its corners,
     /// sum of |G| + h |rate of v|, h the smallest cell size.
     #[inline(always)]
-    fn residual<const D: usize, R: Real>(&self, window: &impl Window<D, R, Pile<R>, Ground<D, R>>) -> R {
-        let Spacing { size, per } = window.spacing();
-        let low = if D > 1 { -1 } else { 0 };
-        // around[y][x], from the neighbour with smaller coordinates.
+    fn residual<const D: usize, R: Real>(
+        &self,
+        window: &impl Window<D, R, Pile<R>, Ground<D, R>>,
+        smallest: R,
+    ) -> R {
+        // around[y][x], from the neighbour with smaller coordinates; in one dimension the rows are the same.
         let around: [[Edges<D, R>; 3]; 3] = std::array::from_fn(|y| {
             std::array::from_fn(|x| {
-                let mut offset = [0; D];
-                offset[0] = x as isize - 1;
-                if D > 1 {
-                    offset[D - 1] = y as isize - 1;
-                }
-                Self::constant(window, offset)
+                let at = [x as isize - 1, y as isize - 1];
+                Self::constant(window, std::array::from_fn(|k| at[k]))
             })
         });
-        let row = |y: isize| &around[(y + 1) as usize];
-        let corner = |x: usize, y: isize| {
-            let (below, above) = (row(y + low), row(y));
-            self.corner([[&below[x], &below[x + 1]], [&above[x], &above[x + 1]]])
+        let corner = |x: usize, y: usize| {
+            corner([[&around[y][x], &around[y][x + 1]], [&around[y + 1][x], &around[y + 1][x + 1]]])
         };
-        let corners: [[R; 2]; 2] = if D > 1 {
-            std::array::from_fn(|y| std::array::from_fn(|x| corner(x, y as isize)))
-        } else {
-            [[corner(0, 0), corner(1, 0)]; 2]
-        };
-        let mid = row(0);
-        let mut faces = [Faces { lo: R::zero(), hi: R::zero() }; D];
-        faces[0] = Faces { lo: self.flux(0, &mid[0], &mid[1]), hi: self.flux(0, &mid[1], &mid[2]) };
-        if D > 1 {
-            let (below, above) = (&row(-1)[1], &row(1)[1]);
-            faces[D - 1] =
-                Faces { lo: self.flux(D - 1, below, &mid[1]), hi: self.flux(D - 1, &mid[1], above) };
-        }
+        let corners: [[R; 2]; 2] = std::array::from_fn(|y| std::array::from_fn(|x| corner(x, y)));
+        let faces: [Faces<R>; D] = std::array::from_fn(|axis| {
+            let (lo, hi) =
+                if axis == 0 { (&around[1][0], &around[1][2]) } else { (&around[0][1], &around[2][1]) };
+            Faces { lo: flux(axis, lo, &around[1][1]), hi: flux(axis, &around[1][1], hi) }
+        });
         let ground = window.at([0; D]).ground;
-        let change = rate_of_v(&ground, &faces, &corners, *per);
-        let mut h = size[0];
-        for axis in 1..D {
-            h = h.min(size[axis]);
-        }
+        let rate = rate_of_v(&ground, &faces, &corners, window.spacing());
         let [[a, b], [c, d]] = corners.map(|row| row.map(R::abs));
-        let sum = if D > 1 { (a + d) + (b + c) } else { a + b };
-        sum + change.abs() * h
+        let corners = if D > 1 { (a + d) + (b + c) } else { a + b };
+        corners + rate.abs() * smallest
     }
 
     /// Theta(E) = E^2/(E^2 + h^m) (eq. 36).
@@ -216,13 +198,223 @@ impl HadelerKuttler {
         exponent: f64,
         window: &impl Window<D, R, Pile<R>, Ground<D, R>>,
     ) -> R {
-        let residual = self.residual(window);
-        let square = residual * residual;
-        let mut scale = window.spacing().size[0];
+        let mut smallest = window.spacing().size[0];
         for axis in 1..D {
-            scale = scale.min(window.spacing().size[axis]);
+            smallest = smallest.min(window.spacing().size[axis]);
         }
-        let scale = (R::of(exponent) * scale.ln()).exp();
-        square / (square + scale)
+        let residual = self.residual(window, smallest);
+        let square = residual * residual;
+        square / (square + smallest.powf(exponent))
+    }
+}
+
+/// The offset of the next cell along `axis`.
+#[inline(always)]
+fn unit<const D: usize>(axis: usize) -> [isize; D] {
+    std::array::from_fn(|k| isize::from(k == axis))
+}
+
+/// H of a face less the value of B there (eqs. 10, 45): what flows towards smaller coordinates.
+#[inline(always)]
+fn flux<const D: usize, R: Real>(axis: usize, left: &Edges<D, R>, right: &Edges<D, R>) -> R {
+    let zero = R::zero();
+    let (a, b) = (left.slope[axis].hi(), right.slope[axis].lo());
+    let (v_a, v_b) = (left.v[axis].hi(), right.v[axis].lo());
+    let (poured_a, poured_b) = (left.poured[axis], right.poured[axis]);
+    let size = a.abs() + b.abs();
+    let level = size.lt(R::of(LEVEL));
+    let lean = R::select(level, zero, (a + b) / R::select(level, R::of(1.0), size));
+    let poured = ((poured_b - poured_a) + lean * (poured_b + poured_a)) * R::of(0.5);
+    let within = (b.positive() * v_b + a.min(zero) * v_a) + poured;
+    // An open edge takes what comes and gives nothing; level ground leads over it.
+    let over_left = b.positive() * v_b + R::select(b.lt(zero), zero, poured_b);
+    let over_right = a.min(zero) * v_a - R::select(zero.lt(a), zero, poured_a);
+    let over = R::select(left.inside, over_right, over_left);
+    let passes = (left.inside | right.inside) & !right.wall[axis];
+    R::select(left.inside & right.inside, within, R::select(passes, over, zero))
+}
+
+/// G at a node (eq. 9; in two dimensions the largest over the cells around it, which keeps v >= 0 and is eq. 9 where
+/// nothing varies along one axis): what the standing layer loses, v (|grad u| - 1).
+#[inline(always)]
+fn corner<const D: usize, R: Real>(around: [[&Edges<D, R>; 2]; 2]) -> R {
+    let (zero, one) = (R::zero(), R::of(1.0));
+    let [[_, below_right], [above_left, above_right]] = around;
+    let mut squares = [[zero; 2]; 2];
+    for axis in 0..D {
+        // The edges that end and that begin at the node, each with the smaller Theta of the cells along it.
+        let (ends, begins) = (if axis == 0 { above_left } else { below_right }, above_right);
+        let beside = |edge: &Edges<D, R>, other: &Edges<D, R>| {
+            edge.edge[axis].across * edge.theta.min(other.theta) * R::of(0.5)
+        };
+        let [ends_beside, begins_beside] =
+            if axis == 0 { [around[0][0], around[0][1]] } else { [around[0][0], around[1][0]] };
+        let falls = (ends.edge[axis].mid + beside(ends, ends_beside)).positive();
+        let rises = (-(begins.edge[axis].mid - beside(begins, begins_beside))).positive();
+        squares[axis] = [falls * falls, rises * rises];
+    }
+    let mut most = R::of(f64::NEG_INFINITY);
+    for (y, row) in around.iter().enumerate() {
+        for (x, cell) in row.iter().enumerate() {
+            let mut square = squares[0][x];
+            let mut v = if x == 0 { cell.v[0].hi() } else { cell.v[0].lo() };
+            if D > 1 {
+                square = square + squares[1][y];
+                let across = cell.v[D - 1].across * R::of(0.5);
+                v = if y == 0 { v + across } else { v - across };
+            }
+            let loss = v * (square.sqrt() - one);
+            most = R::select(cell.inside, most.max(loss), most);
+        }
+    }
+    R::select(above_right.free, most, zero)
+}
+
+/// v_t of a cell: sum over axes of (H_hi - H_lo)/h + f + S, S the mean of G at the cell's nodes (eqs. 8, 44).
+#[inline(always)]
+fn rate_of_v<const D: usize, R: Real>(
+    ground: &Ground<D, R>,
+    faces: &[Faces<R>; D],
+    corners: &[[R; 2]; 2],
+    spacing: &Spacing<D, R>,
+) -> R {
+    let (mut flow, mut poured) = (R::zero(), R::zero());
+    for axis in 0..D {
+        flow = flow + (faces[axis].hi - faces[axis].lo) * spacing.per[axis];
+        poured = poured + ground.source[axis];
+    }
+    let [[a, b], [c, d]] = *corners;
+    let mean = if D > 1 { ((a + d) + (b + c)) * R::of(0.25) } else { (a + b) * R::of(0.5) };
+    R::select(R::zero().lt(ground.inside), flow + (poured + mean), R::zero())
+}
+
+impl<const D: usize, R: Real> Scheme<D, R> for HadelerKuttler {
+    type State = Pile<R>;
+    type Ground = Ground<D, R>;
+    type Edges = Edges<D, R>;
+    type Flux = R;
+    type Corner = R;
+
+    #[inline(always)]
+    fn reconstruct(&self, window: &impl Window<D, R, Pile<R>, Ground<D, R>>) -> Edges<D, R> {
+        let constant = Self::constant(window, [0; D]);
+        let theta = match self.slopes {
+            Slopes::None => return constant,
+            Slopes::Minmod => R::of(1.0),
+            Slopes::Adaptive { exponent } => self.theta(exponent, window),
+        };
+        let theta = R::select(constant.inside, theta, R::of(1.0));
+        let mut edges = Self::linear(window, &constant);
+        edges.theta = theta;
+        for axis in 0..D {
+            edges.v[axis].across = theta * edges.v[axis].across;
+            edges.slope[axis].across = theta * edges.slope[axis].across;
+            let whole = constant.poured[axis];
+            edges.poured[axis] = whole - theta * (whole - edges.poured[axis]);
+        }
+        edges
+    }
+    #[inline(always)]
+    fn flux(&self, axis: usize, left: &Edges<D, R>, right: &Edges<D, R>) -> R {
+        flux(axis, left, right)
+    }
+    #[inline(always)]
+    fn corner(&self, around: [[&Edges<D, R>; 2]; 2]) -> R {
+        corner(around)
+    }
+    #[inline(always)]
+    fn update(
+        &self,
+        here: &Cell<Pile<R>, Ground<D, R>>,
+        _edges: &Edges<D, R>,
+        faces: &[Faces<R>; D],
+        corners: &[[R; 2]; 2],
+        spacing: &Spacing<D, R>,
+        dt: R,
+    ) -> Pile<R> {
+        Pile {
+            u: here.state.u - dt * corners[0][0],
+            v: here.state.v + dt * rate_of_v(&here.ground, faces, corners, spacing),
+        }
+    }
+
+    /// No boundary of the grid is a wall: walls are edges of the table.
+    fn mirror(&self, _axis: usize, state: &Pile<R>) -> Pile<R> {
+        *state
+    }
+    fn mirror_ground(&self, _axis: usize, ground: &Ground<D, R>) -> Ground<D, R> {
+        *ground
+    }
+    /// sum over axes of max(1, v)/h, + 1: the bound of eqs. 26, 27 with slopes up to 1 is dt times this <= 1, or 1/2 with
+    /// slopes.
+    #[inline(always)]
+    fn rate(&self, here: &Cell<Pile<R>, Ground<D, R>>, spacing: &Spacing<D, R>) -> R {
+        let fastest = R::of(1.0).max(here.state.v);
+        let mut sum = R::of(1.0);
+        for axis in 0..D {
+            sum = sum + fastest * spacing.per[axis];
+        }
+        sum
+    }
+    fn most_courant(&self) -> f64 {
+        if self.slopes == Slopes::None { 1.0 } else { 0.5 }
+    }
+    #[inline(always)]
+    fn average(&self, keep: R, old: &Pile<R>, new: &Pile<R>) -> Pile<R> {
+        let give = R::of(1.0) - keep;
+        Pile { u: keep * old.u + give * new.u, v: keep * old.v + give * new.v }
+    }
+    /// No sand rolls here and none is poured.
+    #[inline(always)]
+    fn rests(&self, edges: &Edges<D, R>) -> R::Mask {
+        let mut sum = edges.v[0].mid.abs();
+        for axis in 0..D {
+            sum = sum + edges.poured[axis].abs();
+        }
+        sum.same(R::zero())
+    }
+    #[inline(always)]
+    fn outside(&self, ground: &Ground<D, R>) -> R::Mask {
+        (ground.inside + ground.weight).same(R::zero())
+    }
+    #[inline(always)]
+    fn exit(&self, here: &Ground<D, R>, there: &Ground<D, R>, way: usize) -> Option<usize> {
+        let zero = R::zero();
+        let leaves = zero.lt(here.inside) & !zero.lt(there.inside);
+        let way = if R::any(zero.lt(there.hole)) { 4 } else { way };
+        R::any(leaves).then_some(way)
+    }
+    #[inline(always)]
+    fn supply(&self, ground: &Ground<D, R>) -> R {
+        let mut sum = R::zero();
+        for axis in 0..D {
+            sum = sum + ground.source[axis];
+        }
+        sum
+    }
+    #[inline(always)]
+    fn booked(&self, flux: &R, _side: Side) -> R {
+        -*flux
+    }
+    /// |grad(u + b)| in the cell: 1 is the steepest slope.
+    fn margin(&self, window: &impl Window<D, R, Pile<R>, Ground<D, R>>) -> R {
+        let edges = Self::constant(window, [0; D]);
+        let mut square = R::zero();
+        for axis in 0..D {
+            square = square + edges.slope[axis].mid * edges.slope[axis].mid;
+        }
+        R::select(edges.inside, square.sqrt(), R::zero())
+    }
+    /// Thickness of the pile; in place of a speed the rolling layer, which is what moves.
+    #[inline(always)]
+    fn watch(&self, here: &Cell<Pile<R>, Ground<D, R>>) -> Watch<R> {
+        let Cell { state, ground } = here;
+        Watch {
+            volume: ground.weight * state.u + state.v,
+            speed: state.v,
+            energy: R::zero(),
+            thickness: state.u,
+            film: R::zero(),
+        }
     }
 }
