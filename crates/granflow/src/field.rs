@@ -1,6 +1,7 @@
 //! Cell values as struct of arrays.
 
 use crate::grid::Layout;
+use crate::lanes::Wide;
 use crate::scheme::Parts;
 
 /// One padded array per number of a cell value.
@@ -28,7 +29,7 @@ impl Field {
 }
 
 /// Most numbers that a cell value has.
-const MOST: usize = 16;
+pub(crate) const MOST: usize = 16;
 
 /// A field opened for reading in the inner loop.
 #[derive(Clone, Copy)]
@@ -44,17 +45,21 @@ impl Field {
 }
 
 impl View<'_> {
-    /// The value at `place`.
+    /// Array number `k`.
+    pub fn part(&self, k: usize) -> &[f64] {
+        self.parts[k]
+    }
+    /// The values from `place` on.
     ///
     /// # Safety
-    /// `place` is below [`Layout::len`] of the field's layout, and the field holds values of type `P`.
+    /// `place` is that of a cell or ghost of the field's layout, and the field holds values of type `P`.
     #[inline(always)]
-    pub unsafe fn get<P: Parts<f64>>(&self, place: usize) -> P {
-        const { assert!(P::COUNT <= MOST) };
-        P::gather(|k| {
-            debug_assert!(place < self.parts[k].len());
+    pub(crate) unsafe fn get<L: Wide, P: Parts<L>>(&self, place: usize) -> P {
+        const { assert!(P::COUNT <= MOST && L::WIDTH <= crate::grid::ROOM) };
+        P::gather(#[inline(always)] |k| {
+            debug_assert!(place + L::WIDTH <= self.parts[k].len());
             // SAFETY: as the caller promises; k < P::COUNT <= MOST.
-            unsafe { *self.parts.get_unchecked(k).get_unchecked(place) }
+            unsafe { L::load(self.parts.get_unchecked(k).as_ptr().add(place)) }
         })
     }
 }

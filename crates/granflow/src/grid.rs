@@ -42,6 +42,9 @@ impl<const D: usize> Grid<D> {
 /// Ghost cells at each end of each axis: a face needs the edges of two cells, an edge the cells within its reach.
 pub const GHOSTS: usize = 1 + crate::scheme::REACH;
 
+/// Numbers behind the last row, so that a vector can be read from every place.
+pub(crate) const ROOM: usize = 16;
+
 /// Rows of the padded arrays: x fastest, ghosts included; one row in one dimension.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Layout {
@@ -68,7 +71,7 @@ impl Layout {
     }
     /// Numbers in one padded array.
     pub fn len(&self) -> usize {
-        self.stride * (self.rows + 2 * self.margin)
+        self.stride * (self.rows + 2 * self.margin) + ROOM
     }
     /// A layout always holds a cell.
     pub fn is_empty(&self) -> bool {

@@ -8,7 +8,7 @@
 
 pub mod scheme;
 
-use crate::real::Real;
+use crate::real::{Real, each};
 use crate::scheme::Parts;
 
 /// The unknowns of a cell: u at its node with the smallest coordinates, v in the cell.
@@ -44,6 +44,7 @@ pub struct Ground<const D: usize, R> {
 
 impl<const D: usize, R: Real> Ground<D, R> {
     /// Beside the table.
+    #[inline(always)]
     pub fn outside() -> Self {
         Self::gather(|_| R::zero())
     }
@@ -73,8 +74,8 @@ unsafe impl<const D: usize, R: Real> Parts<R> for Ground<D, R> {
             inside: part(1),
             weight: part(2),
             hole: part(3),
-            source: std::array::from_fn(|k| part(4 + k)),
-            wall: std::array::from_fn(|k| part(4 + D + k)),
+            source: each!(k => part(4 + k)),
+            wall: each!(k => part(4 + D + k)),
         }
     }
     #[inline(always)]

@@ -95,9 +95,11 @@ pub trait Real:
         ];
         let size = self.abs();
         let steep = Self::of(0.5).lt(size);
-        let folded = (Self::of(1.0) - size) * Self::of(0.5);
-        let z = Self::select(steep, folded, size * size);
-        let s = Self::select(steep, folded.sqrt(), size);
+        let (mut z, mut s) = (size * size, size);
+        if Self::any(steep) {
+            let folded = (Self::of(1.0) - size) * Self::of(0.5);
+            (z, s) = (Self::select(steep, folded, z), Self::select(steep, folded.sqrt(), s));
+        }
         let mut p = Self::of(P[0]);
         for c in &P[1..] {
             p = p * z + Self::of(*c);
@@ -154,6 +156,24 @@ impl Real for f64 {
         f64::ln(self)
     }
 }
+
+/// An array made item by item: `each!(k => a[k] + b[k])`.
+///
+/// As `std::array::from_fn`, but without a function in between: what is computed on lanes is inlined whole or not on lanes.
+macro_rules! each {
+    ($k:ident => $value:expr) => {{
+        let first = {
+            let $k = 0;
+            $value
+        };
+        let mut items = [first; _];
+        for $k in 1..items.len() {
+            items[$k] = $value;
+        }
+        items
+    }};
+}
+pub(crate) use each;
 
 /// Inner product of two short vectors, summed in pairs from the first axis on.
 #[inline(always)]

@@ -32,6 +32,7 @@ pub struct Flow<const D: usize, R> {
 
 impl<const D: usize, R: Real> Flow<D, R> {
     /// At rest with depth `h`.
+    #[inline(always)]
     pub fn still(h: R) -> Self {
         Flow { h, q: [R::zero(); D] }
     }

@@ -1,6 +1,6 @@
 //! A scheme is a few pointwise functions; arrays, axes, threads and files live elsewhere.
 
-use crate::real::Real;
+use crate::real::{Real, each};
 
 /// A value of a cell that is stored as a few numbers, one array each (struct of arrays).
 ///
@@ -14,6 +14,90 @@ pub unsafe trait Parts<R: Real>: Copy + Send + Sync + 'static {
     /// Hand the numbers out.
     fn scatter(self, put: impl FnMut(usize, R));
 }
+
+// SAFETY: there are none.
+unsafe impl<R: Real> Parts<R> for () {
+    const COUNT: usize = 0;
+    #[inline(always)]
+    fn gather(_part: impl Fn(usize) -> R) -> Self {}
+    #[inline(always)]
+    fn scatter(self, _put: impl FnMut(usize, R)) {}
+}
+
+// SAFETY: part 0 is below 1.
+unsafe impl<R: Real> Parts<R> for R {
+    const COUNT: usize = 1;
+    #[inline(always)]
+    fn gather(part: impl Fn(usize) -> R) -> Self {
+        part(0)
+    }
+    #[inline(always)]
+    fn scatter(self, mut put: impl FnMut(usize, R)) {
+        put(0, self);
+    }
+}
+
+// SAFETY: the parts of the items follow each other, those of the last end at COUNT.
+unsafe impl<R: Real, P: Parts<R>, const N: usize> Parts<R> for [P; N] {
+    const COUNT: usize = N * P::COUNT;
+    #[inline(always)]
+    fn gather(part: impl Fn(usize) -> R) -> Self {
+        each!(item => P::gather(
+            #[inline(always)]
+            |k| part(item * P::COUNT + k),
+        ))
+    }
+    #[inline(always)]
+    fn scatter(self, mut put: impl FnMut(usize, R)) {
+        for item in 0..N {
+            self[item].scatter(
+                #[inline(always)]
+                |k, value| put(item * P::COUNT + k, value),
+            );
+        }
+    }
+}
+
+/// Implements [`Parts`] for a struct, field by field; the fields of the second list are masks, kept as 1 and 0.
+macro_rules! parts {
+    ([$($generics:tt)*] $name:ty { $($field:ident: $kind:ty),* } masks { $($mask:ident),* }) => {
+        // SAFETY: the parts of the fields follow each other, those of the last end at COUNT.
+        unsafe impl<$($generics)*> $crate::scheme::Parts<R> for $name {
+            const COUNT: usize =
+                0 $(+ <$kind as $crate::scheme::Parts<R>>::COUNT)* $(+ { stringify!($mask); 1 })*;
+            #[inline(always)]
+            #[allow(unused_assignments, unused_mut, unused_variables, reason = "the last field moves on as the others do")]
+            fn gather(part: impl Fn(usize) -> R) -> Self {
+                let mut next = 0;
+                $(
+                    let from = next;
+                    next += <$kind as $crate::scheme::Parts<R>>::COUNT;
+                    let $field = <$kind as $crate::scheme::Parts<R>>::gather(#[inline(always)] |k| part(from + k));
+                )*
+                $(
+                    let $mask = R::zero().lt(part(next));
+                    next += 1;
+                )*
+                Self { $($field,)* $($mask,)* }
+            }
+            #[inline(always)]
+            #[allow(unused_assignments, unused_mut, unused_variables, reason = "the last field moves on as the others do")]
+            fn scatter(self, mut put: impl FnMut(usize, R)) {
+                let mut next = 0;
+                $(
+                    let from = next;
+                    next += <$kind as $crate::scheme::Parts<R>>::COUNT;
+                    <$kind as $crate::scheme::Parts<R>>::scatter(self.$field, #[inline(always)] |k, value| put(from + k, value));
+                )*
+                $(
+                    put(next, R::select(self.$mask, R::of(1.0), R::zero()));
+                    next += 1;
+                )*
+            }
+        }
+    };
+}
+pub(crate) use parts;
 
 /// A cell's state and what is fixed there.
 #[derive(Clone, Copy, Debug)]
@@ -35,8 +119,9 @@ pub struct Spacing<const D: usize, R> {
 
 impl<const D: usize, R: Real> Spacing<D, R> {
     /// From the cell sizes.
+    #[inline(always)]
     pub fn new(size: [f64; D]) -> Self {
-        Spacing { size: size.map(R::of), per: size.map(|s| R::of(1.0 / s)) }
+        Spacing { size: each!(k => R::of(size[k])), per: each!(k => R::of(1.0 / size[k])) }
     }
 }
 
@@ -120,11 +205,14 @@ pub trait Scheme<const D: usize, R: Real>: Send + Sync {
     /// The static data of a cell.
     type Ground: Parts<R>;
     /// What a cell offers to its faces and remembers for its update.
-    type Edges: Copy + Send + Sync;
+    type Edges: Parts<R>;
     /// What passes a face, seen from both sides.
-    type Flux: Copy + Send + Sync;
+    type Flux: Parts<R>;
     /// What is found at a corner of cells; `()` where a scheme needs none.
-    type Corner: Copy + Send + Sync;
+    type Corner: Parts<R>;
+
+    /// Let `work` have the same scheme on another scalar: states and grounds of the same parts in the same order.
+    fn on<L: Real, W: Work<D, L>>(&self, work: W) -> W::Output;
 
     /// What the cell in the middle of the window offers to its faces and corners.
     fn reconstruct(&self, window: &impl Window<D, R, Self::State, Self::Ground>) -> Self::Edges;
@@ -176,6 +264,14 @@ pub trait Scheme<const D: usize, R: Real>: Send + Sync {
     fn margin(&self, window: &impl Window<D, R, Self::State, Self::Ground>) -> R;
     /// What the run keeps watch of in a cell.
     fn watch(&self, here: &Cell<Self::State, Self::Ground>) -> Watch<R>;
+}
+
+/// Work that is done with a scheme.
+pub trait Work<const D: usize, R: Real> {
+    /// What it gives.
+    type Output;
+    /// Do it.
+    fn with<S: Scheme<D, R>>(self, scheme: &S) -> Self::Output;
 }
 
 /// What a run watches in every cell.

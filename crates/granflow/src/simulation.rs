@@ -1,9 +1,10 @@
 //! A run in memory: fields, clock, tiles and ledger.
 
-use crate::backend::{EXITS, MOST_PARTS, Sweep, TILE, Tally, Tile};
+use crate::backend::{Count, EXITS, Leak, MOST_PARTS, STRIP, Sweep, Tally, Tile, tile_size};
 use crate::boundary;
 use crate::field::Field;
-use crate::grid::{Grid, Layout};
+use crate::grid::{GHOSTS, Grid, Layout};
+pub use crate::lanes::Instructions;
 use crate::observe::Maps;
 use crate::real::Sum;
 use crate::scheme::{Boundary, Cell, Scheme, Spacing, Watch, Window};
@@ -89,6 +90,8 @@ pub struct Simulation<const D: usize, S: Scheme<D, f64>> {
     next: Field,
     tiles: Vec<Tile>,
     across: usize,
+    leaks: Vec<Leak>,
+    instructions: Instructions,
     tallies: Vec<Tally>,
     quiet: Vec<bool>,
     awake: Vec<u32>,
@@ -143,7 +146,7 @@ impl<const D: usize, S: Scheme<D, f64>> Simulation<D, S> {
             now.set(Self::place_in(&layout, index), initial(index));
         }
         boundary::fill(&mut bed, &grid, &layout, |axis, g| scheme.mirror_ground(axis, &g));
-        let (tiles, across) = cut(&layout, |i, j| scheme.outside(&bed.get(layout.place(i, j))));
+        let (tiles, across) = cut(&layout);
         let mut simulation = Simulation {
             spacing: Spacing::new(grid.size),
             next: now.clone(),
@@ -168,8 +171,10 @@ impl<const D: usize, S: Scheme<D, f64>> Simulation<D, S> {
             now,
             tiles,
             across,
+            leaks: Vec::new(),
+            instructions: Instructions::Widest,
         };
-        simulation.supply = simulation.supplied();
+        simulation.look_at_grounds();
         simulation.survey();
         simulation
     }
@@ -183,6 +188,65 @@ impl<const D: usize, S: Scheme<D, f64>> Simulation<D, S> {
         sum.value() * self.grid.measure()
     }
 
+    /// Note what follows from the grounds: the supply, the ways out, and where the ground is everywhere the same.
+    fn look_at_grounds(&mut self) {
+        self.supply = self.supplied();
+        self.leaks.clear();
+        for number in 0..self.tiles.len() {
+            let from = self.leaks.len();
+            let Tile { columns, rows, .. } = self.tiles[number];
+            for j in rows[0]..rows[1] {
+                for i in columns[0]..columns[1] {
+                    self.find_leaks([i, j]);
+                }
+            }
+            let even = self.is_even(columns, rows);
+            let tile = &mut self.tiles[number];
+            (tile.leaks, tile.even) = (from..self.leaks.len(), even);
+        }
+    }
+
+    /// Is the ground the same bit for bit in the cells of a tile and all that they see?
+    fn is_even(&self, columns: [usize; 2], rows: [usize; 2]) -> bool {
+        let margin = self.layout.margin as isize;
+        let start = |j: isize| self.layout.place(columns[0] as isize - GHOSTS as isize, j);
+        let width = columns[1] - columns[0] + 2 * GHOSTS;
+        self.grounds.parts.iter().all(|part| {
+            let first = part[start(rows[0] as isize)].to_bits();
+            (rows[0] as isize - margin..rows[1] as isize + margin)
+                .all(|j| part[start(j)..start(j) + width].iter().all(|value| value.to_bits() == first))
+        })
+    }
+
+    /// Note the faces of a cell that lead out of the domain.
+    fn find_leaks(&mut self, cell: [usize; 2]) {
+        let place = self.layout.place(cell[0] as isize, cell[1] as isize);
+        let here: S::Ground = self.grounds.get(place);
+        if self.scheme.outside(&here) {
+            return;
+        }
+        for axis in 0..D {
+            for side in 0..2 {
+                let ends = cell[axis] == if side == 0 { 0 } else { self.grid.cells[axis] - 1 };
+                if ends && self.grid.boundary[axis][side] == Boundary::Periodic {
+                    continue;
+                }
+                let step = self.layout.step(axis);
+                let there = self.grounds.get(if side == 0 { place - step } else { place + step });
+                let way = 2 * axis + side;
+                if let Some(exit) = if ends { Some(way) } else { self.scheme.exit(&here, &there, way) } {
+                    let cell = cell.map(|k| k as u32);
+                    self.leaks.push(Leak { cell, axis: axis as u8, side: side as u8, exit: exit as u8 });
+                }
+            }
+        }
+    }
+
+    /// Compute with these instructions; changes no result, only what it costs.
+    pub fn use_instructions(&mut self, instructions: Instructions) {
+        self.instructions = instructions;
+    }
+
     /// Give every cell the ground that `change` makes of its index and its present one, and wake all.
     pub fn change_grounds(&mut self, change: impl Fn([usize; D], S::Ground) -> S::Ground) {
         for number in 0..self.grid.count() {
@@ -193,7 +257,7 @@ impl<const D: usize, S: Scheme<D, f64>> Simulation<D, S> {
         }
         let (grid, layout, scheme) = (&self.grid, &self.layout, &self.scheme);
         boundary::fill(&mut self.grounds, grid, layout, |axis, g| scheme.mirror_ground(axis, &g));
-        self.supply = self.supplied();
+        self.look_at_grounds();
         self.wake_all();
     }
 
@@ -336,18 +400,18 @@ impl<const D: usize, S: Scheme<D, f64>> Simulation<D, S> {
     /// Rates and counts of the state as it stands (needed once, before the first step or after a restart).
     fn survey(&mut self) {
         for (tile, tally) in self.tiles.iter().zip(&mut self.tallies) {
-            // Nothing is known of the change before the next step.
-            *tally = Tally { change: [f64::INFINITY; MOST_PARTS], ..Tally::NONE };
+            let mut count = Count::<f64>::new();
             for j in tile.rows[0]..tile.rows[1] {
                 for i in tile.columns[0]..tile.columns[1] {
                     let place = self.layout.place(i as isize, j as isize);
                     let cell = Cell { state: self.now.get(place), ground: self.grounds.get(place) };
-                    if self.scheme.outside(&cell.ground) {
-                        continue;
-                    }
-                    tally.count(self.scheme.rate(&cell, &self.spacing), &self.scheme.watch(&cell));
+                    let inside = !self.scheme.outside(&cell.ground);
+                    let rate = self.scheme.rate(&cell, &self.spacing);
+                    count.watch(1 + (i - tile.columns[0]) % (STRIP - 2), inside, rate, &self.scheme.watch(&cell));
                 }
             }
+            // Nothing is known of the change before the next step.
+            *tally = Tally { change: [f64::INFINITY; MOST_PARTS], ..count.finish() };
         }
     }
 
@@ -394,19 +458,19 @@ impl<const D: usize, S: Scheme<D, f64>> Simulation<D, S> {
             let last = stage + 1 == self.stages.len();
             boundary::fill(&mut self.now, &self.grid, &self.layout, |axis, s| self.scheme.mirror(axis, &s));
             let sweep = Sweep {
-                scheme: &self.scheme,
                 layout: self.layout,
-                spacing: self.spacing,
+                size: self.grid.size,
                 grounds: self.grounds.view(),
                 from: self.now.view(),
                 dt,
                 keep,
                 last,
                 time,
-                exits: self.grid.boundary.map(|ends| ends.map(|end| end != Boundary::Periodic)),
+                leaks: &self.leaks,
             };
             let maps = if last { self.maps.as_mut() } else { None };
-            sweep.run(&self.tiles, &self.awake, &mut self.next, maps, &mut self.found);
+            let (tiles, found) = ((&*self.tiles, &*self.awake), &mut *self.found);
+            sweep.run(&self.scheme, self.instructions, tiles, &mut self.next, maps, found);
             std::mem::swap(&mut self.now, &mut self.next);
             out = out.map(|o| o * (1.0 - keep));
             for (&number, found) in self.awake.iter().zip(&self.found) {
@@ -501,22 +565,17 @@ impl<const D: usize, S: Scheme<D, f64>> Simulation<D, S> {
 }
 
 /// The grid cut into tiles, row by row; how many lie side by side.
-fn cut(layout: &Layout, outside: impl Fn(isize, isize) -> bool) -> (Vec<Tile>, usize) {
+fn cut(layout: &Layout) -> (Vec<Tile>, usize) {
     let ends = |count: usize, size: usize| {
         let tiles = count.div_ceil(size);
         (0..tiles).map(move |k| [k * count / tiles, (k + 1) * count / tiles])
     };
-    let across = ends(layout.columns, TILE[0]).count();
+    let [width, height] = tile_size(if layout.margin > 0 { 2 } else { 1 });
+    let across = ends(layout.columns, width).count();
     let mut tiles = Vec::new();
-    for rows in ends(layout.rows, TILE[1]) {
-        for columns in ends(layout.columns, TILE[0]) {
-            let range = |[from, to]: [usize; 2]| from as isize - 1..to as isize + 1;
-            let ends =
-                columns[0] == 0 || columns[1] == layout.columns || rows[0] == 0 || rows[1] == layout.rows;
-            let rim = ends
-                || range(rows)
-                    .any(|j| range(columns).any(|i| outside(i, if layout.rows > 1 { j } else { 0 })));
-            tiles.push(Tile { columns, rows, rim });
+    for rows in ends(layout.rows, height) {
+        for columns in ends(layout.columns, width) {
+            tiles.push(Tile { columns, rows, leaks: 0..0, even: false });
         }
     }
     (tiles, across)

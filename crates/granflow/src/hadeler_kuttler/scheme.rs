@@ -7,8 +7,9 @@
 
 use super::{Ground, Pile};
 use crate::limiter::minmod;
-use crate::real::Real;
-use crate::scheme::{Cell, Faces, Scheme, Side, Spacing, Watch, Window};
+use crate::real::{Real, each};
+use crate::scheme::{Cell, Faces, Parts, Scheme, Side, Spacing, Watch, Window, Work, parts};
+use std::marker::PhantomData;
 
 /// How a cell's values vary across it.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -25,141 +26,251 @@ pub enum Slopes {
     },
 }
 
-/// The scheme: what tells its variants apart are the slopes.
+/// The scheme: what tells its variants apart are the slopes. Where it is known that there are none, `K` is [`Constant`].
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct HadelerKuttler {
+pub struct HadelerKuttler<K = Limited> {
     /// The slopes.
     pub slopes: Slopes,
+    kind: PhantomData<K>,
+}
+
+impl<K> HadelerKuttler<K> {
+    const fn new(slopes: Slopes) -> Self {
+        HadelerKuttler { slopes, kind: PhantomData }
+    }
 }
 
 /// First order (eqs. 8-10), to be stepped by [`crate::time::EULER`].
-pub const FIRST_ORDER: HadelerKuttler = HadelerKuttler { slopes: Slopes::None };
+pub const FIRST_ORDER: HadelerKuttler = HadelerKuttler::new(Slopes::None);
 /// Second order (eqs. 16-23), to be stepped by [`crate::time::SSP_RK2`]; not well-balanced in v.
-pub const SECOND_ORDER: HadelerKuttler = HadelerKuttler { slopes: Slopes::Minmod };
+pub const SECOND_ORDER: HadelerKuttler = HadelerKuttler::new(Slopes::Minmod);
 /// Second order away from steady states, first order and well-balanced at them (eqs. 36-40), with exponent 2; to be
 /// stepped by [`crate::time::SSP_RK2`].
-pub const ADAPTIVE: HadelerKuttler = HadelerKuttler { slopes: Slopes::Adaptive { exponent: 2.0 } };
+pub const ADAPTIVE: HadelerKuttler = HadelerKuttler::new(Slopes::Adaptive { exponent: 2.0 });
 
 /// Two slopes that sum to less are level: their sign is rounding.
 const LEVEL: f64 = 1e-12;
 
+/// How a value varies across a cell.
+pub trait Profile<R: Real>: Parts<R> {
+    /// Not at all.
+    fn flat(mid: R) -> Self;
+    /// By `across` in all, where it can.
+    fn with(self, across: R) -> Self;
+    /// In the middle of the cell.
+    fn mid(&self) -> R;
+    /// What it rises from the middle to the upper end.
+    fn half(&self) -> R;
+    /// At the lower end.
+    #[inline(always)]
+    fn lo(&self) -> R {
+        self.mid() - self.half()
+    }
+    /// At the upper end.
+    #[inline(always)]
+    fn hi(&self) -> R {
+        self.mid() + self.half()
+    }
+}
+
+/// A value that does not vary.
+#[derive(Clone, Copy, Debug)]
+pub struct Level<R>(R);
+
+// SAFETY: part 0 is below 1.
+unsafe impl<R: Real> Parts<R> for Level<R> {
+    const COUNT: usize = 1;
+    #[inline(always)]
+    fn gather(part: impl Fn(usize) -> R) -> Self {
+        Level(part(0))
+    }
+    #[inline(always)]
+    fn scatter(self, mut put: impl FnMut(usize, R)) {
+        put(0, self.0);
+    }
+}
+
+impl<R: Real> Profile<R> for Level<R> {
+    #[inline(always)]
+    fn flat(mid: R) -> Self {
+        Level(mid)
+    }
+    #[inline(always)]
+    fn with(self, _across: R) -> Self {
+        self
+    }
+    #[inline(always)]
+    fn mid(&self) -> R {
+        self.0
+    }
+    #[inline(always)]
+    fn half(&self) -> R {
+        R::zero()
+    }
+}
+
 /// A value and its limited difference across the cell.
 #[derive(Clone, Copy, Debug)]
-struct Linear<R> {
+pub struct Linear<R> {
     mid: R,
     across: R,
 }
+parts!([R: Real] Linear<R> { mid: R, across: R } masks {});
 
-impl<R: Real> Linear<R> {
+impl<R: Real> Profile<R> for Linear<R> {
     #[inline(always)]
     fn flat(mid: R) -> Self {
         Linear { mid, across: R::zero() }
     }
     #[inline(always)]
-    fn lo(&self) -> R {
-        self.mid - self.across * R::of(0.5)
+    fn with(self, across: R) -> Self {
+        Linear { across, ..self }
     }
     #[inline(always)]
-    fn hi(&self) -> R {
-        self.mid + self.across * R::of(0.5)
+    fn mid(&self) -> R {
+        self.mid
     }
+    #[inline(always)]
+    fn half(&self) -> R {
+        self.across * R::of(0.5)
+    }
+}
+
+/// How values vary across the cells of a scheme.
+pub trait Kind: Copy + Send + Sync + 'static {
+    /// A value.
+    type Profile<R: Real>: Profile<R>;
+}
+/// Not at all.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Constant;
+impl Kind for Constant {
+    type Profile<R: Real> = Level<R>;
+}
+/// By limited slopes.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Limited;
+impl Kind for Limited {
+    type Profile<R: Real> = Linear<R>;
 }
 
 /// What a cell offers to its faces and corners.
 #[derive(Clone, Copy, Debug)]
-pub struct Edges<const D: usize, R: Real> {
+pub struct Edges<const D: usize, R: Real, P> {
     /// Rolling layer, along each axis.
-    v: [Linear<R>; D],
+    v: [P; D],
     /// Slope of the surface in the cell, along each axis.
-    slope: [Linear<R>; D],
+    slope: [P; D],
     /// Slope along the cell's lower edge of each axis, not yet adapted.
-    edge: [Linear<R>; D],
+    edge: [P; D],
     /// B at the face less B at the cell's end, (h f - difference of B)/2: what is poured on the half cell.
     poured: [R; D],
     /// Theta of the cell, 1 beside the table.
     theta: R,
+    /// 1 where the face at the lower end of an axis is a wall.
+    wall: [R; D],
     inside: R::Mask,
     /// The lower left node is free to rise.
     free: R::Mask,
-    wall: [R::Mask; D],
+}
+parts!([const D: usize, R: Real, P: Profile<R>] Edges<D, R, P> {
+    v: [P; D], slope: [P; D], edge: [P; D], poured: [R; D], theta: R, wall: [R; D]
+} masks { inside, free });
+
+/// Height of the surface at the lower left node of the cell at `offset`.
+#[inline(always)]
+fn surface<const D: usize, R: Real>(
+    window: &impl Window<D, R, Pile<R>, Ground<D, R>>,
+    offset: [isize; D],
+) -> R {
+    let cell = window.at(offset);
+    cell.state.u + cell.ground.bed
 }
 
-impl HadelerKuttler {
-    /// The cell at `offset` with constant values.
-    #[inline(always)]
-    fn constant<const D: usize, R: Real>(
-        window: &impl Window<D, R, Pile<R>, Ground<D, R>>,
-        offset: [isize; D],
-    ) -> Edges<D, R> {
-        let Cell { state, ground } = window.at(offset);
-        let Spacing { size, per } = window.spacing();
-        let surface = |step: [isize; D]| {
-            let cell = window.at(std::array::from_fn(|k| offset[k] + step[k]));
-            cell.state.u + cell.ground.bed
-        };
-        let half = R::of(0.5);
-        let edge: [R; D] = std::array::from_fn(|k| (surface(unit(k)) - surface([0; D])) * per[k]);
-        let slope = std::array::from_fn(|k| {
-            if D == 1 {
-                return Linear::flat(edge[k]);
-            }
-            let other = unit(1 - k);
-            let far = (surface([1; D]) - surface(other)) * per[k];
-            Linear::flat((edge[k] + far) * half)
-        });
-        Edges {
-            v: [Linear::flat(state.v); D],
-            slope,
-            edge: edge.map(Linear::flat),
-            poured: std::array::from_fn(|k| ground.source[k] * size[k] * half),
-            theta: R::of(1.0),
-            inside: R::zero().lt(ground.inside),
-            free: R::zero().lt(ground.weight),
-            wall: ground.wall.map(|wall| R::zero().lt(wall)),
+/// The cell at `offset` with constant values.
+#[inline(always)]
+fn constant<const D: usize, R: Real, P: Profile<R>>(
+    window: &impl Window<D, R, Pile<R>, Ground<D, R>>,
+    offset: [isize; D],
+) -> Edges<D, R, P> {
+    let Cell { state, ground } = window.at(offset);
+    let Spacing { size, per } = window.spacing();
+    let half = R::of(0.5);
+    let (mut edge, mut slope) = ([R::zero(); D], [R::zero(); D]);
+    let here = surface(window, offset);
+    for k in 0..D {
+        edge[k] = (surface(window, sum(offset, unit(k))) - here) * per[k];
+        slope[k] = edge[k];
+        if D > 1 {
+            let far = surface(window, sum(offset, [1; D])) - surface(window, sum(offset, unit(1 - k)));
+            slope[k] = (edge[k] + far * per[k]) * half;
         }
     }
-
-    /// Limited differences of everything that varies (eqs. 16-18, 43), 0 beside the edge of the table.
-    #[inline(always)]
-    fn linear<const D: usize, R: Real>(
-        window: &impl Window<D, R, Pile<R>, Ground<D, R>>,
-        here: &Edges<D, R>,
-    ) -> Edges<D, R> {
-        let zero = R::zero();
-        let inside = |offset: [isize; D]| zero.lt(window.at(offset).ground.inside);
-        let mut edges = *here;
-        for axis in 0..D {
-            let step = unit::<D>(axis);
-            let back = step.map(|k| -k);
-            let (a, b) = (Self::constant(window, back), Self::constant(window, step));
-            let across = |pick: fn(&Edges<D, R>, usize) -> R| {
-                let mid = pick(here, axis);
-                minmod(mid - pick(&a, axis), pick(&b, axis) - mid)
-            };
-            let smooth = a.inside & b.inside & here.inside;
-            let within = |across: R| R::select(smooth, across, zero);
-            edges.v[axis].across = within(across(|edges, k| edges.v[k].mid));
-            edges.slope[axis].across = within(across(|edges, k| edges.slope[k].mid));
-            // B rises by half of each cell's source between two centres.
-            let (lo, mid, hi) = (a.poured[axis], here.poured[axis], b.poured[axis]);
-            edges.poured[axis] = mid - within(minmod(lo + mid, mid + hi)) * R::of(0.5);
-            // An edge belongs to the table if one of the two cells along it does.
-            let mut exist = smooth;
-            if D > 1 {
-                let below = |along: isize| {
-                    let mut offset = [0; D];
-                    offset[axis] = along;
-                    let cell = inside(offset);
-                    offset[1 - axis] = -1;
-                    cell | inside(offset)
-                };
-                exist = below(-1) & below(0) & below(1);
-            }
-            edges.edge[axis].across = R::select(exist, across(|edges, k| edges.edge[k].mid), zero);
-        }
-        edges
+    Edges {
+        v: [P::flat(state.v); D],
+        slope: each!(k => P::flat(slope[k])),
+        edge: each!(k => P::flat(edge[k])),
+        poured: each!(k => ground.source[k] * size[k] * half),
+        theta: R::of(1.0),
+        wall: ground.wall,
+        inside: R::zero().lt(ground.inside),
+        free: R::zero().lt(ground.weight),
     }
+}
 
+/// The limited difference over three cells, of which all must be on the table.
+#[inline(always)]
+fn limited<R: Real>(smooth: R::Mask, lo: R, mid: R, hi: R) -> R {
+    R::select(smooth, minmod(mid - lo, hi - mid), R::zero())
+}
+
+/// Does one of the two cells along the lower edge of the cell at `along` the axis belong to the table?
+#[inline(always)]
+fn has_edge<const D: usize, R: Real>(
+    window: &impl Window<D, R, Pile<R>, Ground<D, R>>,
+    axis: usize,
+    along: isize,
+) -> R::Mask {
+    let mut offset = [0; D];
+    offset[axis] = along;
+    let cell = R::zero().lt(window.at(offset).ground.inside);
+    offset[1 - axis] = -1;
+    cell | R::zero().lt(window.at(offset).ground.inside)
+}
+
+/// Limited differences of everything that varies (eqs. 16-18, 43), 0 beside the edge of the table.
+#[inline(always)]
+fn linear<const D: usize, R: Real, P: Profile<R>>(
+    window: &impl Window<D, R, Pile<R>, Ground<D, R>>,
+    here: &Edges<D, R, P>,
+    theta: R,
+) -> Edges<D, R, P> {
+    let mut edges = Edges { theta, ..*here };
+    for axis in 0..D {
+        let step = unit::<D>(axis);
+        let a: Edges<D, R, Level<R>> = constant(window, each!(k => -step[k]));
+        let b: Edges<D, R, Level<R>> = constant(window, step);
+        let smooth = a.inside & b.inside & here.inside;
+        let v = limited(smooth, a.v[axis].mid(), here.v[axis].mid(), b.v[axis].mid());
+        edges.v[axis] = here.v[axis].with(theta * v);
+        let slope = limited(smooth, a.slope[axis].mid(), here.slope[axis].mid(), b.slope[axis].mid());
+        edges.slope[axis] = here.slope[axis].with(theta * slope);
+        // B rises by half of each cell's source between two centres.
+        let (lo, mid, hi) = (a.poured[axis], here.poured[axis], b.poured[axis]);
+        let rise = R::select(smooth, minmod(lo + mid, mid + hi), R::zero());
+        edges.poured[axis] = mid - theta * (mid - (mid - rise * R::of(0.5)));
+        // An edge belongs to the table if one of the two cells along it does.
+        let mut exist = smooth;
+        if D > 1 {
+            exist = has_edge(window, axis, -1) & has_edge(window, axis, 0) & has_edge(window, axis, 1);
+        }
+        let edge = limited(exist, a.edge[axis].mid(), here.edge[axis].mid(), b.edge[axis].mid());
+        edges.edge[axis] = here.edge[axis].with(edge);
+    }
+    edges
+}
+
+impl<K: Kind> HadelerKuttler<K> {
     /// E of a cell (eq. 37): what the first-order scheme would change in it and at its corners,
     /// sum of |G| + h |rate of v|, h the smallest cell size.
     #[inline(always)]
@@ -169,24 +280,23 @@ impl HadelerKuttler {
         smallest: R,
     ) -> R {
         // around[y][x], from the neighbour with smaller coordinates; in one dimension the rows are the same.
-        let around: [[Edges<D, R>; 3]; 3] = std::array::from_fn(|y| {
-            std::array::from_fn(|x| {
+        let around: [[Edges<D, R, Level<R>>; 3]; 3] = each!(y => {
+            each!(x => {
                 let at = [x as isize - 1, y as isize - 1];
-                Self::constant(window, std::array::from_fn(|k| at[k]))
+                constant(window, each!(k => at[k]))
             })
         });
-        let corner = |x: usize, y: usize| {
+        let corners: [[R; 2]; 2] = each!(y => each!(x => {
             corner([[&around[y][x], &around[y][x + 1]], [&around[y + 1][x], &around[y + 1][x + 1]]])
-        };
-        let corners: [[R; 2]; 2] = std::array::from_fn(|y| std::array::from_fn(|x| corner(x, y)));
-        let faces: [Faces<R>; D] = std::array::from_fn(|axis| {
+        }));
+        let faces: [Faces<R>; D] = each!(axis => {
             let (lo, hi) =
                 if axis == 0 { (&around[1][0], &around[1][2]) } else { (&around[0][1], &around[2][1]) };
             Faces { lo: flux(axis, lo, &around[1][1]), hi: flux(axis, &around[1][1], hi) }
         });
         let ground = window.at([0; D]).ground;
         let rate = rate_of_v(&ground, &faces, &corners, window.spacing());
-        let [[a, b], [c, d]] = corners.map(|row| row.map(R::abs));
+        let [[a, b], [c, d]]: [[R; 2]; 2] = each!(y => each!(x => corners[y][x].abs()));
         let corners = if D > 1 { (a + d) + (b + c) } else { a + b };
         corners + rate.abs() * smallest
     }
@@ -211,12 +321,21 @@ impl HadelerKuttler {
 /// The offset of the next cell along `axis`.
 #[inline(always)]
 fn unit<const D: usize>(axis: usize) -> [isize; D] {
-    std::array::from_fn(|k| isize::from(k == axis))
+    each!(k => isize::from(k == axis))
+}
+
+#[inline(always)]
+fn sum<const D: usize>(a: [isize; D], b: [isize; D]) -> [isize; D] {
+    each!(k => a[k] + b[k])
 }
 
 /// H of a face less the value of B there (eqs. 10, 45): what flows towards smaller coordinates.
 #[inline(always)]
-fn flux<const D: usize, R: Real>(axis: usize, left: &Edges<D, R>, right: &Edges<D, R>) -> R {
+fn flux<const D: usize, R: Real, P: Profile<R>>(
+    axis: usize,
+    left: &Edges<D, R, P>,
+    right: &Edges<D, R, P>,
+) -> R {
     let zero = R::zero();
     let (a, b) = (left.slope[axis].hi(), right.slope[axis].lo());
     let (v_a, v_b) = (left.v[axis].hi(), right.v[axis].lo());
@@ -230,27 +349,26 @@ fn flux<const D: usize, R: Real>(axis: usize, left: &Edges<D, R>, right: &Edges<
     let over_left = b.positive() * v_b + R::select(b.lt(zero), zero, poured_b);
     let over_right = a.min(zero) * v_a - R::select(zero.lt(a), zero, poured_a);
     let over = R::select(left.inside, over_right, over_left);
-    let passes = (left.inside | right.inside) & !right.wall[axis];
+    let passes = (left.inside | right.inside) & !zero.lt(right.wall[axis]);
     R::select(left.inside & right.inside, within, R::select(passes, over, zero))
 }
 
 /// G at a node (eq. 9; in two dimensions the largest over the cells around it, which keeps v >= 0 and is eq. 9 where
 /// nothing varies along one axis): what the standing layer loses, v (|grad u| - 1).
 #[inline(always)]
-fn corner<const D: usize, R: Real>(around: [[&Edges<D, R>; 2]; 2]) -> R {
+fn corner<const D: usize, R: Real, P: Profile<R>>(around: [[&Edges<D, R, P>; 2]; 2]) -> R {
     let (zero, one) = (R::zero(), R::of(1.0));
     let [[_, below_right], [above_left, above_right]] = around;
     let mut squares = [[zero; 2]; 2];
     for axis in 0..D {
         // The edges that end and that begin at the node, each with the smaller Theta of the cells along it.
         let (ends, begins) = (if axis == 0 { above_left } else { below_right }, above_right);
-        let beside = |edge: &Edges<D, R>, other: &Edges<D, R>| {
-            edge.edge[axis].across * edge.theta.min(other.theta) * R::of(0.5)
-        };
         let [ends_beside, begins_beside] =
             if axis == 0 { [around[0][0], around[0][1]] } else { [around[0][0], around[1][0]] };
-        let falls = (ends.edge[axis].mid + beside(ends, ends_beside)).positive();
-        let rises = (-(begins.edge[axis].mid - beside(begins, begins_beside))).positive();
+        let [ends_edge, begins_edge] = [&ends.edge[axis], &begins.edge[axis]];
+        let over = ends_edge.mid() + ends_edge.half() * ends.theta.min(ends_beside.theta);
+        let under = begins_edge.mid() - begins_edge.half() * begins.theta.min(begins_beside.theta);
+        let (falls, rises) = (over.positive(), (-under).positive());
         squares[axis] = [falls * falls, rises * rises];
     }
     let mut most = R::of(f64::NEG_INFINITY);
@@ -260,7 +378,7 @@ fn corner<const D: usize, R: Real>(around: [[&Edges<D, R>; 2]; 2]) -> R {
             let mut v = if x == 0 { cell.v[0].hi() } else { cell.v[0].lo() };
             if D > 1 {
                 square = square + squares[1][y];
-                let across = cell.v[D - 1].across * R::of(0.5);
+                let across = cell.v[D - 1].half();
                 v = if y == 0 { v + across } else { v - across };
             }
             let loss = v * (square.sqrt() - one);
@@ -288,45 +406,42 @@ fn rate_of_v<const D: usize, R: Real>(
     R::select(R::zero().lt(ground.inside), flow + (poured + mean), R::zero())
 }
 
-impl<const D: usize, R: Real> Scheme<D, R> for HadelerKuttler {
+impl<const D: usize, R: Real, K: Kind> Scheme<D, R> for HadelerKuttler<K> {
     type State = Pile<R>;
     type Ground = Ground<D, R>;
-    type Edges = Edges<D, R>;
+    type Edges = Edges<D, R, K::Profile<R>>;
     type Flux = R;
     type Corner = R;
 
+    fn on<L: Real, W: Work<D, L>>(&self, work: W) -> W::Output {
+        match self.slopes {
+            Slopes::None => work.with(&HadelerKuttler::<Constant>::new(Slopes::None)),
+            slopes => work.with(&HadelerKuttler::<Limited>::new(slopes)),
+        }
+    }
     #[inline(always)]
-    fn reconstruct(&self, window: &impl Window<D, R, Pile<R>, Ground<D, R>>) -> Edges<D, R> {
-        let constant = Self::constant(window, [0; D]);
+    fn reconstruct(&self, window: &impl Window<D, R, Pile<R>, Ground<D, R>>) -> Self::Edges {
+        let constant: Self::Edges = constant(window, [0; D]);
         let theta = match self.slopes {
             Slopes::None => return constant,
             Slopes::Minmod => R::of(1.0),
             Slopes::Adaptive { exponent } => self.theta(exponent, window),
         };
-        let theta = R::select(constant.inside, theta, R::of(1.0));
-        let mut edges = Self::linear(window, &constant);
-        edges.theta = theta;
-        for axis in 0..D {
-            edges.v[axis].across = theta * edges.v[axis].across;
-            edges.slope[axis].across = theta * edges.slope[axis].across;
-            let whole = constant.poured[axis];
-            edges.poured[axis] = whole - theta * (whole - edges.poured[axis]);
-        }
-        edges
+        linear(window, &constant, R::select(constant.inside, theta, R::of(1.0)))
     }
     #[inline(always)]
-    fn flux(&self, axis: usize, left: &Edges<D, R>, right: &Edges<D, R>) -> R {
+    fn flux(&self, axis: usize, left: &Self::Edges, right: &Self::Edges) -> R {
         flux(axis, left, right)
     }
     #[inline(always)]
-    fn corner(&self, around: [[&Edges<D, R>; 2]; 2]) -> R {
+    fn corner(&self, around: [[&Self::Edges; 2]; 2]) -> R {
         corner(around)
     }
     #[inline(always)]
     fn update(
         &self,
         here: &Cell<Pile<R>, Ground<D, R>>,
-        _edges: &Edges<D, R>,
+        _edges: &Self::Edges,
         faces: &[Faces<R>; D],
         corners: &[[R; 2]; 2],
         spacing: &Spacing<D, R>,
@@ -366,8 +481,8 @@ impl<const D: usize, R: Real> Scheme<D, R> for HadelerKuttler {
     }
     /// No sand rolls here and none is poured.
     #[inline(always)]
-    fn rests(&self, edges: &Edges<D, R>) -> R::Mask {
-        let mut sum = edges.v[0].mid.abs();
+    fn rests(&self, edges: &Self::Edges) -> R::Mask {
+        let mut sum = edges.v[0].mid().abs();
         for axis in 0..D {
             sum = sum + edges.poured[axis].abs();
         }
@@ -398,10 +513,10 @@ impl<const D: usize, R: Real> Scheme<D, R> for HadelerKuttler {
     }
     /// |grad(u + b)| in the cell: 1 is the steepest slope.
     fn margin(&self, window: &impl Window<D, R, Pile<R>, Ground<D, R>>) -> R {
-        let edges = Self::constant(window, [0; D]);
+        let edges: Edges<D, R, Level<R>> = constant(window, [0; D]);
         let mut square = R::zero();
         for axis in 0..D {
-            square = square + edges.slope[axis].mid * edges.slope[axis].mid;
+            square = square + edges.slope[axis].mid() * edges.slope[axis].mid();
         }
         R::select(edges.inside, square.sqrt(), R::zero())
     }

@@ -9,8 +9,8 @@ use super::friction::Friction;
 use super::ground::{Bed, Towards};
 use super::{Flow, normal};
 use crate::limiter;
-use crate::real::{Real, largest};
-use crate::scheme::{Cell, Faces, Near, Scheme, Side, Spacing, Watch, Window};
+use crate::real::{Real, each, largest};
+use crate::scheme::{Cell, Faces, Near, Scheme, Side, Spacing, Watch, Window, Work, parts};
 use std::marker::PhantomData;
 
 /// The default scheme: friction law, thinnest moving depth, order of accuracy.
@@ -48,6 +48,9 @@ pub struct Edge<const D: usize, R> {
     rise: R,
     weight: R,
 }
+parts!([const D: usize, R: Real] Edge<D, R> {
+    u: [R; D], outward: R, half: Half<R>, rise: R, weight: R
+} masks {});
 
 impl<const D: usize, R: Real> Edge<D, R> {
     /// Nothing passes.
@@ -63,14 +66,22 @@ impl<const D: usize, R: Real> Edge<D, R> {
         let share = self.outward.positive() / R::select(none, R::of(1.0), self.half.mass.abs());
         R::select(none, R::zero(), share.min(R::of(1.0)))
     }
+    /// The rise that the flux does not carry as pressure: all of it where a cell of the face is held.
+    #[inline(always)]
+    fn beside(&self, held: R::Mask) -> R {
+        R::select(held, self.rise, self.rise - self.weight)
+    }
 }
 
 /// What a cell offers to its faces.
 #[derive(Clone, Copy, Debug)]
-pub struct Edges<const D: usize, R: Real, B> {
+pub struct Edges<const D: usize, R: Real, T> {
     lo: [Edge<D, R>; D],
     hi: [Edge<D, R>; D],
-    bed: B,
+    /// Velocity of the cell.
+    u: [R; D],
+    /// The plane that the bed lies in.
+    plane: T,
     /// Holds itself: thick, q = 0, and the pull is within the static bound.
     held: R::Mask,
     /// Dry, or a film, or outside: takes what comes, gives nothing.
@@ -78,50 +89,31 @@ pub struct Edges<const D: usize, R: Real, B> {
     /// q = 0.
     still: R::Mask,
 }
+parts!([const D: usize, R: Real, T: crate::scheme::Parts<R>] Edges<D, R, T> {
+    lo: [Edge<D, R>; D], hi: [Edge<D, R>; D], u: [R; D], plane: T
+} masks { held, void, still });
 
-impl<const D: usize, R: Real, B> Edges<D, R, B> {
+impl<const D: usize, R: Real, T> Edges<D, R, T> {
     /// Of a cell that offers nothing.
     #[inline(always)]
-    fn closed(bed: B, void: R::Mask) -> Self {
+    fn closed(plane: T, void: R::Mask) -> Self {
         let never = R::zero().lt(R::zero());
         let edges = [Edge::closed(); D];
-        Edges { lo: edges, hi: edges, bed, held: never, still: void, void }
+        Edges { lo: edges, hi: edges, u: [R::zero(); D], plane, held: never, still: void, void }
     }
 }
 
 /// What passes a face.
 #[derive(Clone, Copy, Debug)]
-pub struct Flux<const D: usize, R> {
+pub struct Flux<const D: usize, R: Real> {
     mass: R,
-    left: Seen<D, R>,
-    right: Seen<D, R>,
+    /// Momentum along the axis of the face, as its left and its right cell see it.
+    left: [R; D],
+    right: [R; D],
+    /// One of the two cells is held.
+    held: R::Mask,
 }
-
-/// The face as one of its cells sees it.
-#[derive(Clone, Copy, Debug)]
-struct Seen<const D: usize, R> {
-    /// Momentum flux along the axis of the face.
-    momentum: [R; D],
-    /// Rise towards the other cell that the flux does not carry as pressure.
-    rise: R,
-    /// Rise by thickness, for the pressure's cross terms.
-    weight: R,
-    /// This face's half of the cell's [`Bed::bend`]: it mends the pressure in the flux, and goes with it.
-    bend: R,
-}
-
-impl<const D: usize, R: Real> Seen<D, R> {
-    /// No momentum; the rises across `edge`, whole where a cell of the face is held.
-    #[inline(always)]
-    fn of(edge: &Edge<D, R>, whole: R::Mask) -> Self {
-        Seen {
-            momentum: [R::zero(); D],
-            rise: R::select(whole, edge.rise, edge.rise - edge.weight),
-            weight: R::select(whole, R::zero(), edge.weight),
-            bend: R::select(whole, R::zero(), R::of(0.5)),
-        }
-    }
-}
+parts!([const D: usize, R: Real] Flux<D, R> { mass: R, left: [R; D], right: [R; D] } masks { held });
 
 impl<F: Friction, B: Copy> Balanced<F, B> {
     /// A pull this much above the static bound still counts as held.
@@ -151,6 +143,26 @@ impl<F: Friction, B: Copy> Balanced<F, B> {
         R::of(0.9) * c + u * share
     }
 
+    /// At rest or bare.
+    #[inline(always)]
+    fn is_idle<const D: usize, R: Real>(&self, cell: &Cell<Flow<D, R>, B>) -> R::Mask
+    where
+        B: Bed<D, R>,
+    {
+        cell.state.is_still() | self.is_void(cell.state.h, &cell.ground)
+    }
+
+    /// The rise towards a neighbour. A bare bed above the surface leans on nothing: it counts at most as the surface
+    /// continued.
+    #[inline(always)]
+    fn bare<const D: usize, R: Real>(&self, there: &Cell<Flow<D, R>, B>, rise: R, opposite: R) -> R
+    where
+        B: Bed<D, R>,
+    {
+        let above = self.is_void(there.state.h, &there.ground) & R::zero().lt(rise);
+        R::select(above, rise.min((-opposite).positive()), rise)
+    }
+
     /// Rises towards both neighbours of one axis, as a resting cell counts them.
     #[inline(always)]
     fn rises<const D: usize, R: Real>(
@@ -170,19 +182,13 @@ impl<F: Friction, B: Copy> Balanced<F, B> {
         let (out_lo, out_hi) = (a.ground.outside(), b.ground.outside());
         let zero = R::zero();
         let (lo, hi) = (R::select(out_lo, zero, lo), R::select(out_hi, zero, hi));
-        // A bare bed above the surface leans on nothing: it counts at most as the surface continued.
-        let bare = |there: &Cell<Flow<D, R>, B>, rise: R, opposite: R| {
-            let above = self.is_void(there.state.h, &there.ground) & zero.lt(rise);
-            R::select(above, rise.min((-opposite).positive()), rise)
-        };
-        let (bare_lo, bare_hi) = (bare(a, lo, hi), bare(b, hi, lo));
+        let (bare_lo, bare_hi) = (self.bare(a, lo, hi), self.bare(b, hi, lo));
         // Outside the data the surface goes on as it comes; from one side only, there is no difference.
         let bare_lo = R::select(out_lo, -bare_hi, bare_lo);
         let bare_hi = R::select(out_hi, -bare_lo, bare_hi);
-        let weight = |there: &Cell<Flow<D, R>, B>, outside| {
-            R::select(outside, zero, ground.weight(&there.ground, h, there.state.h))
-        };
-        ([bare_lo, bare_hi], [weight(a, out_lo), weight(b, out_hi)])
+        let weight_lo = R::select(out_lo, zero, ground.weight(&a.ground, h, a.state.h));
+        let weight_hi = R::select(out_hi, zero, ground.weight(&b.ground, h, b.state.h));
+        ([bare_lo, bare_hi], [weight_lo, weight_hi])
     }
 }
 
@@ -220,12 +226,18 @@ impl<F: Friction, B: Copy> Balanced<F, B> {
 impl<F: Friction, const D: usize, R: Real, B: Bed<D, R>> Scheme<D, R> for Balanced<F, B> {
     type State = Flow<D, R>;
     type Ground = B;
-    type Edges = Edges<D, R, B>;
+    type Edges = Edges<D, R, B::Plane>;
     type Flux = Flux<D, R>;
     type Corner = ();
 
     #[inline(always)]
-    fn reconstruct(&self, window: &impl Window<D, R, Flow<D, R>, B>) -> Edges<D, R, B> {
+    fn on<L: Real, W: Work<D, L>>(&self, work: W) -> W::Output {
+        let Balanced { friction, film, slopes, .. } = *self;
+        work.with(&Balanced::<F, B::On<L>> { friction, film, slopes, bed: PhantomData })
+    }
+
+    #[inline(always)]
+    fn reconstruct(&self, window: &impl Window<D, R, Flow<D, R>, B>) -> Self::Edges {
         let near = window.cross();
         let Cell { state, ground } = near.here;
         let (per, zero) = (near.spacing.per, R::zero());
@@ -239,7 +251,7 @@ impl<F: Friction, const D: usize, R: Real, B: Bed<D, R>> Scheme<D, R> for Balanc
             }
         }
         if !R::any(!bare) {
-            return Edges::closed(ground, void);
+            return Edges::closed(ground.plane(), void);
         }
         let Stance { rise, weight, pull, holding } = self.stance(&near);
         let bound = holding * R::of(Self::SLACK) + ground.rounding(state.h, largest(per));
@@ -253,7 +265,7 @@ impl<F: Friction, const D: usize, R: Real, B: Bed<D, R>> Scheme<D, R> for Balanc
             }
         }
 
-        let mut edges = Edges { held, still, ..Edges::closed(ground, void) };
+        let mut edges = Edges { u, held, still, ..Edges::closed(ground.plane(), void) };
         for axis in 0..D {
             (edges.lo[axis].rise, edges.hi[axis].rise) = (rise[axis][0], rise[axis][1]);
             (edges.lo[axis].weight, edges.hi[axis].weight) = (weight[axis][0], weight[axis][1]);
@@ -268,10 +280,7 @@ impl<F: Friction, const D: usize, R: Real, B: Bed<D, R>> Scheme<D, R> for Balanc
                     // Beside a cell at rest or bare there is no smooth flow to be second order in. A velocity
                     // reconstructed down to 0 at a held cell's face carries nothing there, and two cells push each
                     // other for ever (silo); thin cells beside bare ones trickle for ever (mountains).
-                    let rests = |cell: &Cell<Flow<D, R>, B>| {
-                        cell.state.is_still() | self.is_void(cell.state.h, &cell.ground)
-                    };
-                    let smooth = !(rests(&near.lo[axis]) | rests(&near.hi[axis]));
+                    let smooth = !(self.is_idle(&near.lo[axis]) | self.is_idle(&near.hi[axis]));
                     let half = R::select(smooth, R::of(0.5), zero);
                     let dh = half * limiter::central(state.h - a.h, b.h - state.h);
                     (hlo[axis], hhi[axis]) = ((state.h - dh).positive(), (state.h + dh).positive());
@@ -303,43 +312,49 @@ impl<F: Friction, const D: usize, R: Real, B: Bed<D, R>> Scheme<D, R> for Balanc
     }
 
     #[inline(always)]
-    fn flux(&self, axis: usize, left: &Edges<D, R, B>, right: &Edges<D, R, B>) -> Flux<D, R> {
-        let zero = R::zero();
+    fn flux(&self, axis: usize, left: &Self::Edges, right: &Self::Edges) -> Flux<D, R> {
+        let (zero, one) = (R::zero(), R::of(1.0));
         let (a, b) = (&left.hi[axis], &right.lo[axis]);
         // A held cell and a void one give nothing.
         let gives_a = !(left.held | left.void);
         let gives_b = !(right.held | right.void);
-        let either = left.held | right.held;
-        let mut flux = Flux { mass: zero, left: Seen::of(a, either), right: Seen::of(b, either) };
+        let held = left.held | right.held;
+        let mut flux = Flux { mass: zero, left: [zero; D], right: [zero; D], held };
         if R::any(gives_a | gives_b) {
             let (half_a, half_b) = (a.half.only(gives_a), b.half.only(gives_b));
-            // Into a held cell goes only what is carried there, the rest of the density is reflected.
-            let share_a = R::select(right.held, a.carried(), R::of(1.0));
-            let share_b = R::select(left.held, b.carried(), R::of(1.0));
+            let both = half_a.push + half_b.push;
+            let (mut share_a, mut share_b, mut push_a, mut push_b) = (one, one, both, both);
+            if R::any(held) {
+                // Into a held cell goes only what is carried there, the rest of the density is reflected. It feels its
+                // neighbours' thickness through its pull; of the flux it takes the impact.
+                share_a = R::select(right.held, a.carried(), one);
+                share_b = R::select(left.held, b.carried(), one);
+                let reflected_a = R::select(right.held, half_a.reflected(a.u[axis], share_a), both);
+                let reflected_b = R::select(left.held, half_b.reflected(b.u[axis], share_b), both);
+                push_a = R::select(left.held, zero, reflected_a);
+                push_b = R::select(right.held, zero, reflected_b);
+            }
             let (mass_a, mass_b) = (half_a.mass * share_a, half_b.mass * share_b);
-            let (turned_a, turned_b) = (left.bed.turn(a.u, &right.bed), right.bed.turn(b.u, &left.bed));
+            let turned_a = B::turn(a.u, &left.plane, &right.plane);
+            let turned_b = B::turn(b.u, &right.plane, &left.plane);
             flux.mass = mass_a + mass_b;
             for k in 0..D {
-                flux.left.momentum[k] = mass_a * a.u[k] + mass_b * turned_b[k];
-                flux.right.momentum[k] = mass_a * turned_a[k] + mass_b * b.u[k];
+                flux.left[k] = mass_a * a.u[k] + mass_b * turned_b[k];
+                flux.right[k] = mass_a * turned_a[k] + mass_b * b.u[k];
             }
-            // A held cell feels its neighbours' thickness through its pull; of the flux it takes the impact.
-            let both = half_a.push + half_b.push;
-            let push_a = R::select(right.held, half_a.reflected(a.u[axis], share_a), both);
-            let push_b = R::select(left.held, half_b.reflected(b.u[axis], share_b), both);
-            flux.left.momentum[axis] = flux.left.momentum[axis] + R::select(left.held, zero, push_a);
-            flux.right.momentum[axis] = flux.right.momentum[axis] + R::select(right.held, zero, push_b);
+            flux.left[axis] = flux.left[axis] + push_a;
+            flux.right[axis] = flux.right[axis] + push_b;
         }
         flux
     }
 
     #[inline(always)]
-    fn corner(&self, _around: [[&Edges<D, R, B>; 2]; 2]) {}
+    fn corner(&self, _around: [[&Self::Edges; 2]; 2]) {}
     #[inline(always)]
     fn update(
         &self,
         here: &Cell<Flow<D, R>, B>,
-        edges: &Edges<D, R, B>,
+        edges: &Self::Edges,
         faces: &[Faces<Flux<D, R>>; D],
         _corners: &[[(); 2]; 2],
         spacing: &Spacing<D, R>,
@@ -354,7 +369,7 @@ impl<F: Friction, const D: usize, R: Real, B: Bed<D, R>> Scheme<D, R> for Balanc
             let lambda = dt * per[axis];
             gone = gone + lambda * (hi.mass - lo.mass);
             for (k, lost) in lost.iter_mut().enumerate() {
-                *lost = *lost + lambda * (hi.left.momentum[k] - lo.right.momentum[k]);
+                *lost = *lost + lambda * (hi.left[k] - lo.right[k]);
             }
         }
         // What holds itself or is bare, and is not touched, stays: leave out the work.
@@ -367,28 +382,33 @@ impl<F: Friction, const D: usize, R: Real, B: Bed<D, R>> Scheme<D, R> for Balanc
         }
         // One difference of symmetric sums: the axes can be exchanged to the last bit.
         let new = normal(h - gone);
-        let mut moved: [R; D] = std::array::from_fn(|k| q[k] - lost[k]);
+        let mut moved: [R; D] = each!(k => q[k] - lost[k]);
         // The depth under the source: the new one keeps draining cells bounded; at second order the old one
         // keeps the map a forward-Euler step wherever the depth does not halve.
         let depth = if self.slopes { h.min(new + new) } else { new }.positive();
-        let (mut rise, mut weight) = ([[zero; D]; 2], [[zero; D]; 2]);
+        let (mut rise, mut weight, mut bend) = ([[zero; D]; 2], [[zero; D]; 2], [zero; D]);
         for axis in 0..D {
             let Faces { lo, hi } = &faces[axis];
-            (rise[0][axis], rise[1][axis]) = (lo.right.rise, hi.left.rise);
-            (weight[0][axis], weight[1][axis]) = (lo.right.weight, hi.left.weight);
+            let (below, above) = (&edges.lo[axis], &edges.hi[axis]);
+            (rise[0][axis], rise[1][axis]) = (below.beside(lo.held), above.beside(hi.held));
+            // The pressure in the flux, and what mends it, goes where a cell of the face is held.
+            weight[0][axis] = R::select(lo.held, zero, below.weight);
+            weight[1][axis] = R::select(hi.held, zero, above.weight);
+            let half = R::of(0.5);
+            bend[axis] = R::select(lo.held, zero, half) + R::select(hi.held, zero, half);
         }
         let pull = bed.pull(rise[0], rise[1], per);
         let cross = bed.cross(weight[0], weight[1], per);
         for k in 0..D {
-            let bend = bed.bend(k) * h * (faces[k].lo.right.bend + faces[k].hi.left.bend);
-            moved[k] = moved[k] + dt * depth * (pull[k] + cross[k] + bend);
+            let bent = bed.bend(k) * h * bend[k];
+            moved[k] = moved[k] + dt * depth * (pull[k] + cross[k] + bent);
         }
 
         let thickness = bed.thickness(new).max(R::of(f64::MIN_POSITIVE));
-        let old = here.state.velocity();
+        let old = edges.u;
         let speed = bed.square(old).sqrt();
         let law = self.friction.resistance(thickness, speed, bed.load(old), bed.weight_at_rest());
-        let still = here.state.is_still();
+        let still = edges.still;
         let slack = R::of(Self::SLACK);
         let resting = law.holding * slack + bed.rounding(h, largest(per));
         let dry = R::select(still, resting, law.dry);
@@ -396,14 +416,18 @@ impl<F: Friction, const D: usize, R: Real, B: Bed<D, R>> Scheme<D, R> for Balanc
         let loss = dt * depth * dry;
         let left = size - loss;
         // Slower than before, and within a step not by the last place of its depth: it has stopped.
-        let spent = left.le(speed * h) & (left * dt * largest(per)).le(R::of(1e-15) * new);
+        let mut spent = (left * dt * largest(per)).le(R::of(1e-15) * new);
+        if R::any(spent) {
+            spent = spent & left.le(speed * h);
+        }
         let stops = left.le(zero) | spent | new.lt(R::of(self.film)) | new.le(zero);
-        let safe = R::select(stops, R::of(1.0), size);
-        // v + dt drag v^2 = left/h, solved for v: the part that grows with the square, implicitly.
-        let z = dt * law.drag * left / R::select(stops, R::of(1.0), new);
-        let damped = R::of(2.0) / (R::of(1.0) + (R::of(1.0) + R::of(4.0) * R::select(stops, zero, z)).sqrt());
-        let keep = left / safe * damped;
-        let mut slowed = moved.map(|m| R::select(stops, zero, m * keep));
+        let mut keep = left / R::select(stops, R::of(1.0), size);
+        if R::any(!law.drag.same(zero)) {
+            // v + dt drag v^2 = left/h, solved for v: the part that grows with the square, implicitly.
+            let z = R::select(stops, zero, dt * law.drag * left / R::select(stops, R::of(1.0), new));
+            keep = keep * (R::of(2.0) / (R::of(1.0) + (R::of(1.0) + R::of(4.0) * z).sqrt()));
+        }
+        let mut slowed: [R; D] = each!(k => R::select(stops, zero, moved[k] * keep));
         if self.slopes {
             // Along the new velocity friction is first order in time where the flow turns. Where a step takes at most
             // a quarter of the momentum it acts along the old one, as in a forward-Euler step.
@@ -436,14 +460,14 @@ impl<F: Friction, const D: usize, R: Real, B: Bed<D, R>> Scheme<D, R> for Balanc
         let stopped = new.is_still();
         Flow {
             h: keep * old.h + give * new.h,
-            q: std::array::from_fn(|k| R::select(stopped, R::zero(), keep * old.q[k] + give * new.q[k])),
+            q: each!(k => R::select(stopped, R::zero(), keep * old.q[k] + give * new.q[k])),
         }
     }
     /// q = 0: a cell that a step leaves at rest and unchanged, every later step leaves so. Not only held cells: where the
     /// surface or the bed bends, the pull by central differences may exceed the bound, or the drop to one neighbour,
     /// while the forces through the faces do not, and held neighbours take nothing from it.
     #[inline(always)]
-    fn rests(&self, edges: &Edges<D, R, B>) -> R::Mask {
+    fn rests(&self, edges: &Self::Edges) -> R::Mask {
         edges.still | edges.void
     }
     #[inline(always)]

@@ -4,6 +4,7 @@
 //! to the right is carried by xi >= 0, to the left by xi < 0.
 
 use crate::real::Real;
+use crate::scheme::parts;
 use std::f64::consts::{FRAC_2_PI, FRAC_PI_4, PI};
 
 /// One half of the kinetic density, as fluxes along one axis.
@@ -15,8 +16,11 @@ pub struct Half<R> {
     pub push: R,
 }
 
+parts!([R: Real] Half<R> { mass: R, push: R } masks {});
+
 impl<R: Real> Half<R> {
     /// Nothing.
+    #[inline(always)]
     pub fn none() -> Self {
         Half { mass: R::zero(), push: R::zero() }
     }
@@ -58,10 +62,14 @@ pub fn halves<R: Real>(h: R, u: R, beta: R) -> (Half<R>, Half<R>) {
     let third = (square * r) * R::of(1.0 / 3.0);
     let fourth = (x - a * r * (one - (a * a + a * a))) * R::of(0.125);
     let scale = R::of(FRAC_2_PI) * h;
-    let half =
-        |m0: R, m1: R, m2: R| Half { mass: scale * (u * m0 + c * m1), push: scale * (c * (u * m1 + c * m2)) };
     let (m0, m2) = (R::of(FRAC_PI_4), R::of(PI / 16.0));
-    (half(m0 + area, -third, m2 + fourth), half(m0 - area, third, m2 - fourth))
+    let mut halves = [Half::none(); 2];
+    for (half, [m0, m1, m2]) in
+        halves.iter_mut().zip([[m0 + area, -third, m2 + fourth], [m0 - area, third, m2 - fourth]])
+    {
+        *half = Half { mass: scale * (u * m0 + c * m1), push: scale * (c * (u * m1 + c * m2)) };
+    }
+    (halves[0], halves[1])
 }
 
 #[cfg(test)]

@@ -1,7 +1,7 @@
 //! What is fixed in a cell: the papers' chute, or a piece of a mountain.
 
 use crate::real::{Real, dot};
-use crate::scheme::Parts;
+use crate::scheme::{Parts, parts};
 
 /// The neighbour's place along an axis.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -17,6 +17,12 @@ pub enum Towards {
 /// The pull of a mass at rest is F = -M grad(psi), psi the potential of the free surface per mass, M the metric of
 /// horizontal vectors (identity on a chute, I - s s^T on terrain).
 pub trait Bed<const D: usize, R: Real>: Parts<R> {
+    /// The same bed on another scalar.
+    type On<L: Real>: Bed<D, L>;
+    /// What a face must know of the bed to turn a velocity into it.
+    type Plane: Parts<R>;
+    /// See [`Bed::turn`].
+    fn plane(&self) -> Self::Plane;
     /// Pressure coefficient along `axis`: P = beta h^2/2.
     fn beta(&self, axis: usize) -> R;
     /// psi at the neighbour minus psi here, depths `h_there` and `h`; `dx` is their distance.
@@ -37,8 +43,8 @@ pub trait Bed<const D: usize, R: Real>: Parts<R> {
     fn square(&self, v: [R; D]) -> R;
     /// Length along the bed of a unit step along `axis`.
     fn stretch(&self, axis: usize) -> R;
-    /// `w` turned into the tangent plane of `to`, at the same speed along the bed.
-    fn turn(&self, w: [R; D], to: &Self) -> [R; D];
+    /// `w` turned from one tangent plane into another, at the same speed along the bed.
+    fn turn(w: [R; D], from: &Self::Plane, to: &Self::Plane) -> [R; D];
     /// Thickness normal to the bed.
     fn thickness(&self, h: R) -> R;
     /// Rounding of a rise divided by dx: the uncertainty of the pull.
@@ -97,6 +103,10 @@ unsafe impl<const D: usize, R: Real> Parts<R> for Chute<D, R> {
 }
 
 impl<const D: usize, R: Real> Bed<D, R> for Chute<D, R> {
+    type On<L: Real> = Chute<D, L>;
+    type Plane = ();
+    #[inline(always)]
+    fn plane(&self) {}
     #[inline(always)]
     fn beta(&self, _axis: usize) -> R {
         self.beta
@@ -143,7 +153,7 @@ impl<const D: usize, R: Real> Bed<D, R> for Chute<D, R> {
         R::of(1.0)
     }
     #[inline(always)]
-    fn turn(&self, w: [R; D], _to: &Self) -> [R; D] {
+    fn turn(w: [R; D], _from: &(), _to: &()) -> [R; D] {
         w
     }
     #[inline(always)]
@@ -186,6 +196,7 @@ pub struct Terrain<const D: usize, R> {
 
 impl<const D: usize, R: Real> Terrain<D, R> {
     /// A cell outside the data.
+    #[inline(always)]
     pub fn nothing() -> Self {
         let zero = R::zero();
         Terrain {
@@ -196,6 +207,12 @@ impl<const D: usize, R: Real> Terrain<D, R> {
             curvature: [[zero; D]; D],
             bend: [zero; D],
         }
+    }
+    /// The part in which the second derivative along axes i and j is kept.
+    #[inline(always)]
+    fn packed(i: usize, j: usize) -> usize {
+        let (i, j) = if i < j { (i, j) } else { (j, i) };
+        3 + 2 * D + i * D + j - i * (i + 1) / 2
     }
     #[inline(always)]
     fn metric(&self, mut v: [R; D]) -> [R; D] {
@@ -254,16 +271,12 @@ unsafe impl<const D: usize, R: Real> Parts<R> for Terrain<D, R> {
     const COUNT: usize = 3 + 2 * D + D * (D + 1) / 2;
     #[inline(always)]
     fn gather(part: impl Fn(usize) -> R) -> Self {
-        let packed = |i: usize, j: usize| {
-            let (i, j) = if i < j { (i, j) } else { (j, i) };
-            3 + 2 * D + i * D + j - i * (i + 1) / 2
-        };
         let mut cell = Terrain { level: part(0), cos: part(1), fall: part(2), ..Terrain::nothing() };
         for i in 0..D {
             cell.slope[i] = part(3 + i);
             cell.bend[i] = part(3 + D + i);
             for j in 0..D {
-                cell.curvature[i][j] = part(packed(i, j));
+                cell.curvature[i][j] = part(Self::packed(i, j));
             }
         }
         cell
@@ -285,7 +298,21 @@ unsafe impl<const D: usize, R: Real> Parts<R> for Terrain<D, R> {
     }
 }
 
+/// The tangent plane of a bed.
+#[derive(Clone, Copy, Debug)]
+pub struct Tangent<const D: usize, R> {
+    slope: [R; D],
+    cos: R,
+}
+parts!([const D: usize, R: Real] Tangent<D, R> { slope: [R; D], cos: R } masks {});
+
 impl<const D: usize, R: Real> Bed<D, R> for Terrain<D, R> {
+    type On<L: Real> = Terrain<D, L>;
+    type Plane = Tangent<D, R>;
+    #[inline(always)]
+    fn plane(&self) -> Tangent<D, R> {
+        Tangent { slope: self.slope, cos: self.cos }
+    }
     #[inline(always)]
     fn beta(&self, axis: usize) -> R {
         let s = self.cos * self.slope[axis];
@@ -341,9 +368,9 @@ impl<const D: usize, R: Real> Bed<D, R> for Terrain<D, R> {
         (R::of(1.0) + self.slope[axis] * self.slope[axis]).sqrt()
     }
     #[inline(always)]
-    fn turn(&self, w: [R; D], to: &Self) -> [R; D] {
+    fn turn(w: [R; D], from: &Tangent<D, R>, to: &Tangent<D, R>) -> [R; D] {
         // V = (w, grad b . w); what sticks out of the receiver's plane is cut off and the rest stretched to |V|.
-        let up = dot(self.slope, w);
+        let up = dot(from.slope, w);
         let out = up - dot(to.slope, w);
         let c2 = to.cos * to.cos;
         let whole = dot(w, w) + up * up;

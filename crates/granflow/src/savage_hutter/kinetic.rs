@@ -4,12 +4,12 @@
 //! two dimensions on a plane by applying the fluxes along each axis, the (1, 2, 1)/4 depth per axis and static
 //! friction as the projection onto a disc.
 
-use super::flux::halves;
+use super::flux::{Half, halves};
 use super::friction::{Coulomb, Friction};
 use super::ground::{Bed, Chute, Towards};
 use super::{Flow, normal};
-use crate::real::{Real, dot};
-use crate::scheme::{Cell, Faces, Scheme, Side, Spacing, Watch, Window};
+use crate::real::{Real, dot, each};
+use crate::scheme::{Cell, Faces, Scheme, Side, Spacing, Watch, Window, Work, parts};
 
 /// The depth that enters the half moments at a face.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -83,11 +83,17 @@ pub const VERFAHREN_5: Kinetic = Kinetic { moving: FaceDepth::Own, ..VERFAHREN_4
 pub struct Edges<const D: usize, R> {
     here: Flow<D, R>,
     u: [R; D],
+    /// The halves at the cell's own depth, where the scheme takes them, along each axis.
+    halves: [[Half<R>; 2]; D],
     beta: R,
     /// beta D h - tilt per axis: the pull that friction must hold, as an acceleration.
     excess: [R; D],
     smoothed: [R; D],
 }
+
+parts!([const D: usize, R: Real] Edges<D, R> {
+    here: Flow<D, R>, u: [R; D], halves: [[Half<R>; 2]; D], beta: R, excess: [R; D], smoothed: [R; D]
+} masks {});
 
 /// Mass and momentum through a face, once with the moving and once with the resting cell's face depth.
 #[derive(Clone, Copy, Debug)]
@@ -95,6 +101,8 @@ pub struct Flux<const D: usize, R> {
     moving: Flow<D, R>,
     resting: Flow<D, R>,
 }
+
+parts!([const D: usize, R: Real] Flux<D, R> { moving: Flow<D, R>, resting: Flow<D, R> } masks {});
 
 impl Kinetic {
     /// F or F~ through the face between `left` and `right`.
@@ -106,16 +114,30 @@ impl Kinetic {
         right: &Edges<D, R>,
     ) -> Flow<D, R> {
         let mean = (left.here.h + right.here.h) * R::of(0.5);
-        let (hl, hr) = match depth {
-            FaceDepth::Own => (left.here.h, right.here.h),
-            FaceDepth::Mean => (mean, mean),
+        let (out, back) = match depth {
+            FaceDepth::Own => (left.halves[axis][1], right.halves[axis][0]),
+            FaceDepth::Mean => {
+                (halves(mean, left.u[axis], left.beta).1, halves(mean, right.u[axis], right.beta).0)
+            }
         };
-        let out = halves(hl, left.u[axis], left.beta).1;
-        let back = halves(hr, right.u[axis], right.beta).0;
-        let mut q: [R; D] = std::array::from_fn(|k| out.mass * left.u[k] + back.mass * right.u[k]);
+        let mut q: [R; D] = each!(k => out.mass * left.u[k] + back.mass * right.u[k]);
         q[axis] = q[axis] + (out.push + back.push);
         Flow { h: out.mass + back.mass, q }
     }
+}
+
+/// sum over axes of lambda (F_hi - F_lo).
+#[inline(always)]
+fn divergence<const D: usize, R: Real>(faces: &[Faces<Flow<D, R>>; D], lambda: [R; D]) -> Flow<D, R> {
+    let mut sum = Flow::still(R::zero());
+    for axis in 0..D {
+        let Faces { lo, hi } = &faces[axis];
+        sum.h = sum.h + lambda[axis] * (hi.h - lo.h);
+        for k in 0..D {
+            sum.q[k] = sum.q[k] + lambda[axis] * (hi.q[k] - lo.q[k]);
+        }
+    }
+    sum
 }
 
 impl<const D: usize, R: Real> Scheme<D, R> for Kinetic {
@@ -126,26 +148,29 @@ impl<const D: usize, R: Real> Scheme<D, R> for Kinetic {
     type Corner = ();
 
     #[inline(always)]
+    fn on<L: Real, W: Work<D, L>>(&self, work: W) -> W::Output {
+        work.with(self)
+    }
+
+    #[inline(always)]
     fn reconstruct(&self, window: &impl Window<D, R, Flow<D, R>, Chute<D, R>>) -> Edges<D, R> {
         let near = window.cross();
         let Cell { state, ground } = near.here;
-        let lo: [R; D] = std::array::from_fn(|k| near.lo[k].state.h);
-        let hi: [R; D] = std::array::from_fn(|k| near.hi[k].state.h);
-        let rise = |towards, axis: usize| {
-            let there = if towards == Towards::Lo { &near.lo[axis] } else { &near.hi[axis] };
-            ground.rise(axis, towards, &there.ground, state.h, there.state.h, near.spacing.size[axis])
-        };
-        let pull = ground.pull(
-            std::array::from_fn(|k| rise(Towards::Lo, k)),
-            std::array::from_fn(|k| rise(Towards::Hi, k)),
-            near.spacing.per,
-        );
+        let lo: [R; D] = each!(k => near.lo[k].state.h);
+        let hi: [R; D] = each!(k => near.hi[k].state.h);
+        let (size, per) = (near.spacing.size, near.spacing.per);
+        let rise_lo = each!(k => ground.rise(k, Towards::Lo, &near.lo[k].ground, state.h, lo[k], size[k]));
+        let rise_hi = each!(k => ground.rise(k, Towards::Hi, &near.hi[k].ground, state.h, hi[k], size[k]));
+        let pull = ground.pull(rise_lo, rise_hi, per);
+        let u = state.velocity();
+        let own = self.moving == FaceDepth::Own || self.resting == FaceDepth::Own;
         Edges {
             here: state,
-            u: state.velocity(),
+            u,
+            halves: each!(k => if own { halves(state.h, u[k], ground.beta).into() } else { [Half::none(); 2] }),
             beta: ground.beta,
-            excess: pull.map(|f| -f),
-            smoothed: std::array::from_fn(|k| ((lo[k] + hi[k]) + (state.h + state.h)) * R::of(0.25)),
+            excess: each!(k => -pull[k]),
+            smoothed: each!(k => ((lo[k] + hi[k]) + (state.h + state.h)) * R::of(0.25)),
         }
     }
 
@@ -171,21 +196,15 @@ impl<const D: usize, R: Real> Scheme<D, R> for Kinetic {
     ) -> Flow<D, R> {
         let Flow { h, q } = here.state;
         let ground = &here.ground;
-        let lambda = spacing.per.map(|per| dt * per);
+        let lambda: [R; D] = each!(k => dt * spacing.per[k]);
         let zero = R::zero();
-        let divergence =
-            |pick: fn(&Flux<D, R>) -> Flow<D, R>, part: fn(&Flow<D, R>, usize) -> R, k: usize| {
-                let mut sum = zero;
-                for axis in 0..D {
-                    let (lo, hi) = (pick(&faces[axis].lo), pick(&faces[axis].hi));
-                    sum = sum + lambda[axis] * (part(&hi, k) - part(&lo, k));
-                }
-                sum
-            };
-        let mass = |flow: &Flow<D, R>, _: usize| flow.h;
-        let momentum = |flow: &Flow<D, R>, k: usize| flow.q[k];
-        let moving_h = normal(h - divergence(|f| f.moving, mass, 0));
-        let resting_h = normal(h - divergence(|f| f.resting, mass, 0));
+        let moving: [Faces<Flow<D, R>>; D] =
+            each!(axis => Faces { lo: faces[axis].lo.moving, hi: faces[axis].hi.moving });
+        let resting: [Faces<Flow<D, R>>; D] =
+            each!(axis => Faces { lo: faces[axis].lo.resting, hi: faces[axis].hi.resting });
+        let (moving, resting) = (divergence(&moving, lambda), divergence(&resting, lambda));
+        let moving_h = normal(h - moving.h);
+        let resting_h = normal(h - resting.h);
 
         // g(q) = tilt - R q/|q|
         let bound = self.friction.resistance(h, zero, ground.cos, ground.cos).holding;
@@ -193,13 +212,13 @@ impl<const D: usize, R: Real> Scheme<D, R> for Kinetic {
         let size = dot(q, q).sqrt();
         let still = size.same(zero);
         let per = R::of(1.0) / R::select(still, R::of(1.0), size);
-        let g: [R; D] = std::array::from_fn(|k| ground.tilt[k] - bound * (q[k] * per));
+        let g: [R; D] = each!(k => ground.tilt[k] - bound * (q[k] * per));
 
         // g~: the static force per mass, tilt plus the excess cut to the disc of radius R
         let excess = dot(edges.excess, edges.excess).sqrt();
         let over = bound.lt(excess);
         let cut = R::select(over, bound / R::select(over, excess, R::of(1.0)), R::of(1.0));
-        let held: [R; D] = std::array::from_fn(|k| ground.tilt[k] + edges.excess[k] * cut);
+        let held: [R; D] = each!(k => ground.tilt[k] + edges.excess[k] * cut);
 
         let square = dot(g, g);
         let slow = size.lt(dt * square.sqrt() * moving_h) | still;
@@ -212,20 +231,16 @@ impl<const D: usize, R: Real> Scheme<D, R> for Kinetic {
         let no_weight = weight.same(zero) | still;
         let blend =
             R::of(1.0) + R::select(no_weight, zero, dot(q, g) / R::select(no_weight, R::of(1.0), weight));
-        let static_depth = |k: usize| match self.static_depth {
-            StaticDepth::New => resting_h,
-            StaticDepth::Smoothed => edges.smoothed[k],
+        let static_depth = match self.static_depth {
+            StaticDepth::New => [resting_h; D],
+            StaticDepth::Smoothed => edges.smoothed,
         };
         Flow {
             h: R::select(rests, resting_h, moving_h),
-            q: std::array::from_fn(|k| {
-                let source = dt * held[k] * static_depth(k);
+            q: each!(k => {
+                let source = dt * held[k] * static_depth[k];
                 let rest = if self.blend { blend * source } else { q[k] + source };
-                R::select(
-                    rests,
-                    rest - divergence(|f| f.resting, momentum, k),
-                    q[k] - divergence(|f| f.moving, momentum, k) + dt * g[k] * moving_h,
-                )
+                R::select(rests, rest - resting.q[k], q[k] - moving.q[k] + dt * g[k] * moving_h)
             }),
         }
     }
@@ -243,7 +258,7 @@ impl<const D: usize, R: Real> Scheme<D, R> for Kinetic {
     #[inline(always)]
     fn average(&self, keep: R, old: &Flow<D, R>, new: &Flow<D, R>) -> Flow<D, R> {
         let give = R::of(1.0) - keep;
-        Flow { h: keep * old.h + give * new.h, q: std::array::from_fn(|k| keep * old.q[k] + give * new.q[k]) }
+        Flow { h: keep * old.h + give * new.h, q: each!(k => keep * old.q[k] + give * new.q[k]) }
     }
     /// The published schemes prove no rest; a dry cell counts.
     #[inline(always)]
