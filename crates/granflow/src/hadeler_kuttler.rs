@@ -8,7 +8,7 @@
 
 pub mod scheme;
 
-use crate::real::{Real, each};
+use crate::real::{Real, each, unroll};
 use crate::scheme::Parts;
 
 /// The unknowns of a cell: u at its node with the smallest coordinates, v in the cell.
@@ -84,9 +84,9 @@ unsafe impl<const D: usize, R: Real> Parts<R> for Ground<D, R> {
         put(1, self.inside);
         put(2, self.weight);
         put(3, self.hole);
-        for axis in 0..D {
+        unroll!(axis in D => {
             put(4 + axis, self.source[axis]);
             put(4 + D + axis, self.wall[axis]);
-        }
+        });
     }
 }

@@ -2,6 +2,14 @@
 
 use crate::real::Real;
 
+/// A scheme whose values do not vary across a cell.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Constant;
+
+/// A scheme whose values may have limited slopes.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Limited;
+
 /// The smallest of two differences of one sign, else 0: minmod(a, b).
 #[inline(always)]
 pub fn minmod<R: Real>(a: R, b: R) -> R {

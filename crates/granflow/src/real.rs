@@ -100,10 +100,18 @@ pub trait Real:
             let folded = (Self::of(1.0) - size) * Self::of(0.5);
             (z, s) = (Self::select(steep, folded, z), Self::select(steep, folded.sqrt(), s));
         }
-        let mut p = Self::of(P[0]);
-        for c in &P[1..] {
-            p = p * z + Self::of(*c);
-        }
+        // in pairs of pairs (Estrin): a third of the way from the first to the last operation
+        let z2 = z * z;
+        let z4 = z2 * z2;
+        let pair: [Self; 6] = [
+            Self::of(P[0]) * z + Self::of(P[1]),
+            Self::of(P[2]) * z + Self::of(P[3]),
+            Self::of(P[4]) * z + Self::of(P[5]),
+            Self::of(P[6]) * z + Self::of(P[7]),
+            Self::of(P[8]) * z + Self::of(P[9]),
+            Self::of(P[10]) * z + Self::of(P[11]),
+        ];
+        let p = (pair[0] * z2 + pair[1]) * (z4 * z4) + ((pair[2] * z2 + pair[3]) * z4 + (pair[4] * z2 + pair[5]));
         let rest = s * (z * p);
         // pi/2 - 2 (s + rest), the large terms first; the last constant is what f64 cuts off from pi/2
         let far = (Self::of(std::f64::consts::FRAC_PI_2) - (s + s))
@@ -157,31 +165,64 @@ impl Real for f64 {
     }
 }
 
+/// `k` itself. (The compiler would warn of an index in a branch that is never taken.)
+#[inline(always)]
+pub(crate) const fn nth(k: usize) -> usize {
+    k
+}
+
 /// An array made item by item: `each!(k => a[k] + b[k])`.
 ///
 /// As `std::array::from_fn`, but without a function in between: what is computed on lanes is inlined whole or not on lanes.
 macro_rules! each {
     ($k:ident => $value:expr) => {{
         let first = {
-            let $k = 0;
+            let $k = $crate::real::nth(0);
             $value
         };
         let mut items = [first; _];
-        for $k in 1..items.len() {
+        if items.len() > 1 {
+            let $k = $crate::real::nth(1);
             items[$k] = $value;
         }
+        if items.len() > 2 {
+            let $k = $crate::real::nth(2);
+            items[$k] = $value;
+        }
+        assert!(items.len() <= 3);
         items
     }};
 }
 pub(crate) use each;
 
+/// `unroll!(k in N => { .. })`: the block for k = 0 .. N, N at most 3, one after the other.
+///
+/// A loop over the axes that is left to the compiler may stay one, and then keeps its arrays in memory.
+macro_rules! unroll {
+    ($k:ident in $n:ident => $body:block) => {{
+        assert!($n <= 3);
+        $crate::real::unroll!(@one $k, 0, $n, $body);
+        $crate::real::unroll!(@one $k, 1, $n, $body);
+        $crate::real::unroll!(@one $k, 2, $n, $body);
+    }};
+    (@one $k:ident, $value:literal, $n:ident, $body:block) => {
+        if $value < $n {
+            let $k = $crate::real::nth($value);
+            $body
+        }
+    };
+}
+pub(crate) use unroll;
+
 /// Inner product of two short vectors, summed in pairs from the first axis on.
 #[inline(always)]
 pub fn dot<const D: usize, R: Real>(a: [R; D], b: [R; D]) -> R {
     let mut sum = a[0] * b[0];
-    for axis in 1..D {
-        sum = sum + a[axis] * b[axis];
-    }
+    unroll!(axis in D => {
+        if axis > 0 {
+            sum = sum + a[axis] * b[axis];
+        }
+    });
     sum
 }
 
@@ -189,9 +230,11 @@ pub fn dot<const D: usize, R: Real>(a: [R; D], b: [R; D]) -> R {
 #[inline(always)]
 pub fn largest<const D: usize, R: Real>(values: [R; D]) -> R {
     let mut most = values[0];
-    for axis in 1..D {
-        most = most.max(values[axis]);
-    }
+    unroll!(axis in D => {
+        if axis > 0 {
+            most = most.max(values[axis]);
+        }
+    });
     most
 }
 

@@ -11,7 +11,7 @@ pub mod friction;
 pub mod ground;
 pub mod kinetic;
 
-use crate::real::Real;
+use crate::real::{Real, unroll};
 use crate::scheme::{Parts, Watch};
 use ground::Bed;
 
@@ -43,9 +43,9 @@ impl<const D: usize, R: Real> Flow<D, R> {
         let dry = self.h.le(R::zero());
         let per = R::of(1.0) / R::select(dry, R::of(1.0), self.h);
         let mut u = self.q;
-        for u in &mut u {
-            *u = R::select(dry, R::zero(), *u * per);
-        }
+        unroll!(k in D => {
+            u[k] = R::select(dry, R::zero(), u[k] * per);
+        });
         u
     }
 
@@ -53,9 +53,9 @@ impl<const D: usize, R: Real> Flow<D, R> {
     #[inline(always)]
     pub fn is_still(&self) -> R::Mask {
         let mut still = self.q[0].same(R::zero());
-        for axis in 1..D {
+        unroll!(axis in D => {
             still = still & self.q[axis].same(R::zero());
-        }
+        });
         still
     }
 
@@ -70,10 +70,10 @@ impl<const D: usize, R: Real> Flow<D, R> {
     pub fn rate<B: Bed<D, R>>(&self, bed: &B, per: [R; D]) -> R {
         let u = self.velocity();
         let mut sum = R::zero();
-        for axis in 0..D {
+        unroll!(axis in D => {
             let beta = bed.beta(axis);
             sum = sum + (u[axis].abs() + ((beta + beta) * self.h.positive()).sqrt()) * per[axis];
-        }
+        });
         sum
     }
 
@@ -98,16 +98,16 @@ unsafe impl<const D: usize, R: Real> Parts<R> for Flow<D, R> {
     #[inline(always)]
     fn gather(part: impl Fn(usize) -> R) -> Self {
         let mut flow = Flow::still(part(0));
-        for axis in 0..D {
+        unroll!(axis in D => {
             flow.q[axis] = part(1 + axis);
-        }
+        });
         flow
     }
     #[inline(always)]
     fn scatter(self, mut put: impl FnMut(usize, R)) {
         put(0, self.h);
-        for axis in 0..D {
+        unroll!(axis in D => {
             put(1 + axis, self.q[axis]);
-        }
+        });
     }
 }

@@ -1,6 +1,6 @@
 //! A scheme is a few pointwise functions; arrays, axes, threads and files live elsewhere.
 
-use crate::real::{Real, each};
+use crate::real::{Real, each, unroll};
 
 /// A value of a cell that is stored as a few numbers, one array each (struct of arrays).
 ///
@@ -49,12 +49,12 @@ unsafe impl<R: Real, P: Parts<R>, const N: usize> Parts<R> for [P; N] {
     }
     #[inline(always)]
     fn scatter(self, mut put: impl FnMut(usize, R)) {
-        for item in 0..N {
+        unroll!(item in N => {
             self[item].scatter(
                 #[inline(always)]
                 |k, value| put(item * P::COUNT + k, value),
             );
-        }
+        });
     }
 }
 
@@ -150,13 +150,13 @@ pub trait Window<const D: usize, R: Real, S: Copy, G: Copy> {
     fn cross(&self) -> Near<D, R, S, G> {
         let here = self.at([0; D]);
         let (mut lo, mut hi) = ([here; D], [here; D]);
-        for axis in 0..D {
+        unroll!(axis in D => {
             let mut step = [0; D];
             step[axis] = 1;
             hi[axis] = self.at(step);
             step[axis] = -1;
             lo[axis] = self.at(step);
-        }
+        });
         Near { here, lo, hi, spacing: *self.spacing() }
     }
 }

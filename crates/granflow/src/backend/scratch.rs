@@ -15,9 +15,6 @@ const ROW: usize = ROOM + STRIP + ROOM;
 pub(super) struct Row<const MOST: usize>([[MaybeUninit<f64>; ROW]; MOST]);
 
 impl<const MOST: usize> Row<MOST> {
-    pub(super) const fn new() -> Self {
-        Row([[MaybeUninit::uninit(); ROW]; MOST])
-    }
     /// The values of the cells from `at` on.
     ///
     /// # Safety
@@ -68,12 +65,8 @@ pub(super) struct Scratch {
 
 impl Scratch {
     #[inline(always)]
-    pub(super) const fn new() -> Self {
-        Scratch {
-            edges: [const { Row::new() }; 2],
-            across: Row::new(),
-            below: Row::new(),
-            corners: [const { Row::new() }; 2],
-        }
+    pub(super) fn new() -> Self {
+        // SAFETY: rows of numbers that need not be initialized. (A constant would be copied here.)
+        unsafe { MaybeUninit::<Scratch>::uninit().assume_init() }
     }
 }

@@ -6,8 +6,8 @@
 //! sum over a cell of what is left is its own source.
 
 use super::{Ground, Pile};
-use crate::limiter::minmod;
-use crate::real::{Real, each};
+use crate::limiter::{Constant, Limited, minmod};
+use crate::real::{Real, each, unroll};
 use crate::scheme::{Cell, Faces, Parts, Scheme, Side, Spacing, Watch, Window, Work, parts};
 use std::marker::PhantomData;
 
@@ -47,6 +47,9 @@ pub const SECOND_ORDER: HadelerKuttler = HadelerKuttler::new(Slopes::Minmod);
 /// Second order away from steady states, first order and well-balanced at them (eqs. 36-40), with exponent 2; to be
 /// stepped by [`crate::time::SSP_RK2`].
 pub const ADAPTIVE: HadelerKuttler = HadelerKuttler::new(Slopes::Adaptive { exponent: 2.0 });
+
+/// Cells along each axis at a corner.
+const TWO: usize = 2;
 
 /// Two slopes that sum to less are level: their sign is rounding.
 const LEVEL: f64 = 1e-12;
@@ -141,15 +144,9 @@ pub trait Kind: Copy + Send + Sync + 'static {
     /// A value.
     type Profile<R: Real>: Profile<R>;
 }
-/// Not at all.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Constant;
 impl Kind for Constant {
     type Profile<R: Real> = Level<R>;
 }
-/// By limited slopes.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Limited;
 impl Kind for Limited {
     type Profile<R: Real> = Linear<R>;
 }
@@ -198,14 +195,14 @@ fn constant<const D: usize, R: Real, P: Profile<R>>(
     let half = R::of(0.5);
     let (mut edge, mut slope) = ([R::zero(); D], [R::zero(); D]);
     let here = surface(window, offset);
-    for k in 0..D {
+    unroll!(k in D => {
         edge[k] = (surface(window, sum(offset, unit(k))) - here) * per[k];
         slope[k] = edge[k];
         if D > 1 {
             let far = surface(window, sum(offset, [1; D])) - surface(window, sum(offset, unit(1 - k)));
             slope[k] = (edge[k] + far * per[k]) * half;
         }
-    }
+    });
     Edges {
         v: [P::flat(state.v); D],
         slope: each!(k => P::flat(slope[k])),
@@ -246,7 +243,7 @@ fn linear<const D: usize, R: Real, P: Profile<R>>(
     theta: R,
 ) -> Edges<D, R, P> {
     let mut edges = Edges { theta, ..*here };
-    for axis in 0..D {
+    unroll!(axis in D => {
         let step = unit::<D>(axis);
         let a: Edges<D, R, Level<R>> = constant(window, each!(k => -step[k]));
         let b: Edges<D, R, Level<R>> = constant(window, step);
@@ -266,7 +263,7 @@ fn linear<const D: usize, R: Real, P: Profile<R>>(
         }
         let edge = limited(exist, a.edge[axis].mid(), here.edge[axis].mid(), b.edge[axis].mid());
         edges.edge[axis] = here.edge[axis].with(edge);
-    }
+    });
     edges
 }
 
@@ -309,9 +306,9 @@ impl<K: Kind> HadelerKuttler<K> {
         window: &impl Window<D, R, Pile<R>, Ground<D, R>>,
     ) -> R {
         let mut smallest = window.spacing().size[0];
-        for axis in 1..D {
+        unroll!(axis in D => {
             smallest = smallest.min(window.spacing().size[axis]);
-        }
+        });
         let residual = self.residual(window, smallest);
         let square = residual * residual;
         square / (square + smallest.powf(exponent))
@@ -360,7 +357,7 @@ fn corner<const D: usize, R: Real, P: Profile<R>>(around: [[&Edges<D, R, P>; 2];
     let (zero, one) = (R::zero(), R::of(1.0));
     let [[_, below_right], [above_left, above_right]] = around;
     let mut squares = [[zero; 2]; 2];
-    for axis in 0..D {
+    unroll!(axis in D => {
         // The edges that end and that begin at the node, each with the smaller Theta of the cells along it.
         let (ends, begins) = (if axis == 0 { above_left } else { below_right }, above_right);
         let [ends_beside, begins_beside] =
@@ -370,10 +367,11 @@ fn corner<const D: usize, R: Real, P: Profile<R>>(around: [[&Edges<D, R, P>; 2];
         let under = begins_edge.mid() - begins_edge.half() * begins.theta.min(begins_beside.theta);
         let (falls, rises) = (over.positive(), (-under).positive());
         squares[axis] = [falls * falls, rises * rises];
-    }
+    });
     let mut most = R::of(f64::NEG_INFINITY);
-    for (y, row) in around.iter().enumerate() {
-        for (x, cell) in row.iter().enumerate() {
+    unroll!(y in TWO => {
+        unroll!(x in TWO => {
+            let cell = around[y][x];
             let mut square = squares[0][x];
             let mut v = if x == 0 { cell.v[0].hi() } else { cell.v[0].lo() };
             if D > 1 {
@@ -383,8 +381,8 @@ fn corner<const D: usize, R: Real, P: Profile<R>>(around: [[&Edges<D, R, P>; 2];
             }
             let loss = v * (square.sqrt() - one);
             most = R::select(cell.inside, most.max(loss), most);
-        }
-    }
+        });
+    });
     R::select(above_right.free, most, zero)
 }
 
@@ -397,10 +395,10 @@ fn rate_of_v<const D: usize, R: Real>(
     spacing: &Spacing<D, R>,
 ) -> R {
     let (mut flow, mut poured) = (R::zero(), R::zero());
-    for axis in 0..D {
+    unroll!(axis in D => {
         flow = flow + (faces[axis].hi - faces[axis].lo) * spacing.per[axis];
         poured = poured + ground.source[axis];
-    }
+    });
     let [[a, b], [c, d]] = *corners;
     let mean = if D > 1 { ((a + d) + (b + c)) * R::of(0.25) } else { (a + b) * R::of(0.5) };
     R::select(R::zero().lt(ground.inside), flow + (poured + mean), R::zero())
@@ -466,9 +464,9 @@ impl<const D: usize, R: Real, K: Kind> Scheme<D, R> for HadelerKuttler<K> {
     fn rate(&self, here: &Cell<Pile<R>, Ground<D, R>>, spacing: &Spacing<D, R>) -> R {
         let fastest = R::of(1.0).max(here.state.v);
         let mut sum = R::of(1.0);
-        for axis in 0..D {
+        unroll!(axis in D => {
             sum = sum + fastest * spacing.per[axis];
-        }
+        });
         sum
     }
     fn most_courant(&self) -> f64 {
@@ -483,9 +481,9 @@ impl<const D: usize, R: Real, K: Kind> Scheme<D, R> for HadelerKuttler<K> {
     #[inline(always)]
     fn rests(&self, edges: &Self::Edges) -> R::Mask {
         let mut sum = edges.v[0].mid().abs();
-        for axis in 0..D {
+        unroll!(axis in D => {
             sum = sum + edges.poured[axis].abs();
-        }
+        });
         sum.same(R::zero())
     }
     #[inline(always)]
@@ -502,9 +500,9 @@ impl<const D: usize, R: Real, K: Kind> Scheme<D, R> for HadelerKuttler<K> {
     #[inline(always)]
     fn supply(&self, ground: &Ground<D, R>) -> R {
         let mut sum = R::zero();
-        for axis in 0..D {
+        unroll!(axis in D => {
             sum = sum + ground.source[axis];
-        }
+        });
         sum
     }
     #[inline(always)]
@@ -515,9 +513,9 @@ impl<const D: usize, R: Real, K: Kind> Scheme<D, R> for HadelerKuttler<K> {
     fn margin(&self, window: &impl Window<D, R, Pile<R>, Ground<D, R>>) -> R {
         let edges: Edges<D, R, Level<R>> = constant(window, [0; D]);
         let mut square = R::zero();
-        for axis in 0..D {
+        unroll!(axis in D => {
             square = square + edges.slope[axis].mid() * edges.slope[axis].mid();
-        }
+        });
         R::select(edges.inside, square.sqrt(), R::zero())
     }
     /// Thickness of the pile; in place of a speed the rolling layer, which is what moves.

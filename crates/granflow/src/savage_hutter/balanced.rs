@@ -8,27 +8,28 @@ use super::flux::{Half, halves};
 use super::friction::Friction;
 use super::ground::{Bed, Towards};
 use super::{Flow, normal};
-use crate::limiter;
-use crate::real::{Real, each, largest};
-use crate::scheme::{Cell, Faces, Near, Scheme, Side, Spacing, Watch, Window, Work, parts};
+use crate::limiter::{self, Constant, Limited};
+use crate::real::{Real, each, largest, unroll};
+use crate::scheme::{Cell, Faces, Near, Parts, Scheme, Side, Spacing, Watch, Window, Work, parts};
 use std::marker::PhantomData;
 
-/// The default scheme: friction law, thinnest moving depth, order of accuracy.
+/// The default scheme: friction law, thinnest moving depth, order of accuracy. Where it is known that there are no slopes,
+/// `K` is [`Constant`].
 #[derive(Clone, Copy, Debug)]
-pub struct Balanced<F, B> {
+pub struct Balanced<F, B, K = Limited> {
     /// The friction law.
     pub friction: F,
     /// A cell thinner than this keeps what it has (units of h; 0 allowed).
     pub film: f64,
     /// Limited slopes of h and u (second order, with [`crate::time::SSP_RK2`]).
     pub slopes: bool,
-    bed: PhantomData<fn() -> B>,
+    kind: PhantomData<fn() -> (B, K)>,
 }
 
 impl<F, B> Balanced<F, B> {
     /// First order, to be stepped by [`crate::time::EULER`].
     pub fn first(friction: F, film: f64) -> Self {
-        Balanced { friction, film, slopes: false, bed: PhantomData }
+        Balanced { friction, film, slopes: false, kind: PhantomData }
     }
     /// Second order, to be stepped by [`crate::time::SSP_RK2`].
     pub fn second(friction: F, film: f64) -> Self {
@@ -36,50 +37,91 @@ impl<F, B> Balanced<F, B> {
     }
 }
 
-/// Towards one neighbour.
-#[derive(Clone, Copy, Debug)]
-pub struct Edge<const D: usize, R> {
-    u: [R; D],
-    /// h u along the axis, outwards through this face.
-    outward: R,
-    /// What the kinetic density sends through this face.
-    half: Half<R>,
-    /// Rise of the free surface's potential towards the neighbour, and its part by thickness.
-    rise: R,
-    weight: R,
+/// How depth and velocity vary across a cell.
+pub trait Spread<const D: usize, R: Real>: Parts<R> {
+    /// Not at all.
+    fn none() -> Self;
+    /// By dh and du from the middle to the upper end, where they can.
+    fn by(dh: R, du: [R; D]) -> Self;
+    /// Depth at one end.
+    fn depth(&self, towards: Towards, h: R) -> R;
+    /// Velocity at one end.
+    fn velocity(&self, towards: Towards, u: [R; D]) -> [R; D];
 }
-parts!([const D: usize, R: Real] Edge<D, R> {
-    u: [R; D], outward: R, half: Half<R>, rise: R, weight: R
-} masks {});
 
-impl<const D: usize, R: Real> Edge<D, R> {
-    /// Nothing passes.
+impl<const D: usize, R: Real> Spread<D, R> for () {
     #[inline(always)]
-    fn closed() -> Self {
-        let zero = R::zero();
-        Edge { u: [zero; D], outward: zero, half: Half::none(), rise: zero, weight: zero }
-    }
-    /// The share of the outgoing density that the mean flow carries.
+    fn none() {}
     #[inline(always)]
-    fn carried(&self) -> R {
-        let none = self.half.mass.same(R::zero());
-        let share = self.outward.positive() / R::select(none, R::of(1.0), self.half.mass.abs());
-        R::select(none, R::zero(), share.min(R::of(1.0)))
-    }
-    /// The rise that the flux does not carry as pressure: all of it where a cell of the face is held.
+    fn by(_dh: R, _du: [R; D]) {}
     #[inline(always)]
-    fn beside(&self, held: R::Mask) -> R {
-        R::select(held, self.rise, self.rise - self.weight)
+    fn depth(&self, _towards: Towards, h: R) -> R {
+        h
     }
+    #[inline(always)]
+    fn velocity(&self, _towards: Towards, u: [R; D]) -> [R; D] {
+        u
+    }
+}
+
+/// Half of the limited differences across a cell, along one axis.
+#[derive(Clone, Copy, Debug)]
+pub struct Slope<const D: usize, R> {
+    h: R,
+    u: [R; D],
+}
+parts!([const D: usize, R: Real] Slope<D, R> { h: R, u: [R; D] } masks {});
+
+impl<const D: usize, R: Real> Spread<D, R> for Slope<D, R> {
+    #[inline(always)]
+    fn none() -> Self {
+        Slope { h: R::zero(), u: [R::zero(); D] }
+    }
+    #[inline(always)]
+    fn by(h: R, u: [R; D]) -> Self {
+        Slope { h, u }
+    }
+    #[inline(always)]
+    fn depth(&self, towards: Towards, h: R) -> R {
+        match towards {
+            Towards::Lo => h - self.h,
+            Towards::Hi => h + self.h,
+        }
+        .positive()
+    }
+    #[inline(always)]
+    fn velocity(&self, towards: Towards, u: [R; D]) -> [R; D] {
+        each!(k => match towards {
+            Towards::Lo => u[k] - self.u[k],
+            Towards::Hi => u[k] + self.u[k],
+        })
+    }
+}
+
+/// How values vary across the cells of a scheme.
+pub trait Kind: Copy + Send + Sync + 'static {
+    /// Along one axis.
+    type Spread<const D: usize, R: Real>: Spread<D, R>;
+}
+impl Kind for Constant {
+    type Spread<const D: usize, R: Real> = ();
+}
+impl Kind for Limited {
+    type Spread<const D: usize, R: Real> = Slope<D, R>;
 }
 
 /// What a cell offers to its faces.
 #[derive(Clone, Copy, Debug)]
-pub struct Edges<const D: usize, R: Real, T> {
-    lo: [Edge<D, R>; D],
-    hi: [Edge<D, R>; D],
-    /// Velocity of the cell.
+pub struct Edges<const D: usize, R: Real, P, T> {
+    h: R,
     u: [R; D],
+    /// How they vary, per axis.
+    spread: [P; D],
+    /// What the kinetic density sends through the lower and the upper face of each axis.
+    half: [[Half<R>; 2]; D],
+    /// Rise of the free surface's potential towards both neighbours of each axis, and its part by thickness.
+    rise: [[R; 2]; D],
+    weight: [[R; 2]; D],
     /// The plane that the bed lies in.
     plane: T,
     /// Holds itself: thick, q = 0, and the pull is within the static bound.
@@ -89,17 +131,26 @@ pub struct Edges<const D: usize, R: Real, T> {
     /// q = 0.
     still: R::Mask,
 }
-parts!([const D: usize, R: Real, T: crate::scheme::Parts<R>] Edges<D, R, T> {
-    lo: [Edge<D, R>; D], hi: [Edge<D, R>; D], u: [R; D], plane: T
+parts!([const D: usize, R: Real, P: Parts<R>, T: Parts<R>] Edges<D, R, P, T> {
+    h: R, u: [R; D], spread: [P; D], half: [[Half<R>; 2]; D], rise: [[R; 2]; D], weight: [[R; 2]; D], plane: T
 } masks { held, void, still });
 
-impl<const D: usize, R: Real, T> Edges<D, R, T> {
-    /// Of a cell that offers nothing.
+impl<const D: usize, R: Real, P: Spread<D, R>, T> Edges<D, R, P, T> {
+    /// The share of the density going out through a face that the mean flow carries.
     #[inline(always)]
-    fn closed(plane: T, void: R::Mask) -> Self {
-        let never = R::zero().lt(R::zero());
-        let edges = [Edge::closed(); D];
-        Edges { lo: edges, hi: edges, u: [R::zero(); D], plane, held: never, still: void, void }
+    fn carried(&self, axis: usize, towards: Towards) -> R {
+        let flow = self.spread[axis].depth(towards, self.h) * self.spread[axis].velocity(towards, self.u)[axis];
+        let outward = if towards == Towards::Lo { -flow } else { flow };
+        let mass = self.half[axis][towards as usize].mass;
+        let none = mass.same(R::zero());
+        let share = outward.positive() / R::select(none, R::of(1.0), mass.abs());
+        R::select(none, R::zero(), share.min(R::of(1.0)))
+    }
+    /// The rise that the flux does not carry as pressure: all of it where a cell of the face is held.
+    #[inline(always)]
+    fn beside(&self, axis: usize, towards: Towards, held: R::Mask) -> R {
+        let (rise, weight) = (self.rise[axis][towards as usize], self.weight[axis][towards as usize]);
+        R::select(held, rise, rise - weight)
     }
 }
 
@@ -115,7 +166,7 @@ pub struct Flux<const D: usize, R: Real> {
 }
 parts!([const D: usize, R: Real] Flux<D, R> { mass: R, left: [R; D], right: [R; D] } masks { held });
 
-impl<F: Friction, B: Copy> Balanced<F, B> {
+impl<F: Friction, B: Copy, K> Balanced<F, B, K> {
     /// A pull this much above the static bound still counts as held.
     const SLACK: f64 = 1.0 + 1e-10;
 
@@ -192,6 +243,41 @@ impl<F: Friction, B: Copy> Balanced<F, B> {
     }
 }
 
+type EdgesOf<const D: usize, R, B, K> = Edges<D, R, <K as Kind>::Spread<D, R>, <B as Bed<D, R>>::Plane>;
+
+impl<F: Friction, B: Copy, K: Kind> Balanced<F, B, K> {
+    /// Limited slopes along one axis, and the halves at the cell's two ends.
+    #[inline(always)]
+    fn spread<const D: usize, R: Real>(
+        &self,
+        near: &Near<D, R, Flow<D, R>, B>,
+        u: [R; D],
+        axis: usize,
+        edges: &mut EdgesOf<D, R, B, K>,
+    ) where
+        B: Bed<D, R>,
+    {
+        let Flow { h, .. } = near.here.state;
+        let (a, b) = (&near.lo[axis].state, &near.hi[axis].state);
+        let (ua, ub) = (a.velocity(), b.velocity());
+        // Beside a cell at rest or bare there is no smooth flow to be second order in. A velocity reconstructed
+        // down to 0 at a held cell's face carries nothing there, and two cells push each other for ever (silo);
+        // thin cells beside bare ones trickle for ever (mountains).
+        let smooth = !(self.is_idle(&near.lo[axis]) | self.is_idle(&near.hi[axis]));
+        let half = R::select(smooth, R::of(0.5), R::zero());
+        let dh = half * limiter::central(h - a.h, b.h - h);
+        let mut du: [R; D] = each!(k => half * limiter::central(u[k] - ua[k], ub[k] - u[k]));
+        let beta = near.here.ground.beta(axis);
+        let most = Self::most_spread(h, dh.abs(), u[axis].abs(), beta);
+        du[axis] = du[axis].min(most).max(-most);
+        let spread = K::Spread::by(dh, du);
+        edges.spread[axis] = spread;
+        let lo = halves(spread.depth(Towards::Lo, h), spread.velocity(Towards::Lo, u)[axis], beta).0;
+        let hi = halves(spread.depth(Towards::Hi, h), spread.velocity(Towards::Hi, u)[axis], beta).1;
+        edges.half[axis] = [lo, hi];
+    }
+}
+
 /// How a mass would stand in its cell at rest.
 struct Stance<const D: usize, R> {
     rise: [[R; 2]; D],
@@ -202,7 +288,7 @@ struct Stance<const D: usize, R> {
     holding: R,
 }
 
-impl<F: Friction, B: Copy> Balanced<F, B> {
+impl<F: Friction, B: Copy, K> Balanced<F, B, K> {
     #[inline(always)]
     fn stance<const D: usize, R: Real>(&self, near: &Near<D, R, Flow<D, R>, B>) -> Stance<D, R>
     where
@@ -212,10 +298,10 @@ impl<F: Friction, B: Copy> Balanced<F, B> {
         let zero = R::zero();
         let (mut rise, mut weight) = ([[zero; 2]; D], [[zero; 2]; D]);
         let (mut lo, mut hi) = ([zero; D], [zero; D]);
-        for axis in 0..D {
+        unroll!(axis in D => {
             (rise[axis], weight[axis]) = self.rises(near, axis);
             (lo[axis], hi[axis]) = (rise[axis][0], rise[axis][1]);
-        }
+        });
         let at_rest = ground.weight_at_rest();
         let thickness = ground.thickness(state.h).max(R::of(f64::MIN_POSITIVE));
         let holding = self.friction.resistance(thickness, zero, at_rest, at_rest).holding;
@@ -223,17 +309,20 @@ impl<F: Friction, B: Copy> Balanced<F, B> {
     }
 }
 
-impl<F: Friction, const D: usize, R: Real, B: Bed<D, R>> Scheme<D, R> for Balanced<F, B> {
+impl<F: Friction, const D: usize, R: Real, B: Bed<D, R>, K: Kind> Scheme<D, R> for Balanced<F, B, K> {
     type State = Flow<D, R>;
     type Ground = B;
-    type Edges = Edges<D, R, B::Plane>;
+    type Edges = Edges<D, R, K::Spread<D, R>, B::Plane>;
     type Flux = Flux<D, R>;
     type Corner = ();
 
-    #[inline(always)]
     fn on<L: Real, W: Work<D, L>>(&self, work: W) -> W::Output {
         let Balanced { friction, film, slopes, .. } = *self;
-        work.with(&Balanced::<F, B::On<L>> { friction, film, slopes, bed: PhantomData })
+        if slopes {
+            work.with(&Balanced::<F, B::On<L>, Limited> { friction, film, slopes, kind: PhantomData })
+        } else {
+            work.with(&Balanced::<F, B::On<L>, Constant> { friction, film, slopes, kind: PhantomData })
+        }
     }
 
     #[inline(always)]
@@ -243,105 +332,89 @@ impl<F: Friction, const D: usize, R: Real, B: Bed<D, R>> Scheme<D, R> for Balanc
         let (per, zero) = (near.spacing.per, R::zero());
         let u = state.velocity();
         let void = self.is_void(state.h, &ground);
+        let mut edges = Edges {
+            h: state.h,
+            u,
+            spread: [K::Spread::none(); D],
+            half: [[Half::none(); 2]; D],
+            rise: [[zero; 2]; D],
+            weight: [[zero; 2]; D],
+            plane: ground.plane(),
+            held: zero.lt(zero),
+            void,
+            still: state.is_still(),
+        };
         // Nothing can come to a bare cell among bare ones: leave out the work.
         let mut bare = void;
-        for axis in 0..D {
-            for there in [&near.lo[axis], &near.hi[axis]] {
-                bare = bare & self.is_void(there.state.h, &there.ground);
-            }
-        }
+        unroll!(axis in D => {
+            bare = bare & self.is_void(near.lo[axis].state.h, &near.lo[axis].ground);
+            bare = bare & self.is_void(near.hi[axis].state.h, &near.hi[axis].ground);
+        });
         if !R::any(!bare) {
-            return Edges::closed(ground.plane(), void);
+            return edges;
         }
-        let Stance { rise, weight, pull, holding } = self.stance(&near);
-        let bound = holding * R::of(Self::SLACK) + ground.rounding(state.h, largest(per));
-        let still = state.is_still();
-        let mut held = ground.square(pull).le(bound * bound) & still & !void;
-        // A symmetric tower pulls nowhere, yet falls: bound the drop towards each neighbour too.
-        for axis in 0..D {
-            let drop = bound * near.spacing.size[axis] * ground.stretch(axis);
-            for side in 0..2 {
-                held = held & (-rise[axis][side]).min(-weight[axis][side]).le(drop);
-            }
+        let stance = self.stance(&near);
+        (edges.rise, edges.weight) = (stance.rise, stance.weight);
+        let still = edges.still & !void;
+        if R::any(still) {
+            let bound = stance.holding * R::of(Self::SLACK) + ground.rounding(state.h, largest(per));
+            let mut held = ground.square(stance.pull).le(bound * bound) & still;
+            // A symmetric tower pulls nowhere, yet falls: bound the drop towards each neighbour too.
+            unroll!(axis in D => {
+                let drop = bound * near.spacing.size[axis] * ground.stretch(axis);
+                let ([a, b], [c, d]) = (edges.rise[axis], edges.weight[axis]);
+                held = held & (-a).min(-c).le(drop) & (-b).min(-d).le(drop);
+            });
+            edges.held = held;
         }
-
-        let mut edges = Edges { u, held, still, ..Edges::closed(ground.plane(), void) };
-        for axis in 0..D {
-            (edges.lo[axis].rise, edges.hi[axis].rise) = (rise[axis][0], rise[axis][1]);
-            (edges.lo[axis].weight, edges.hi[axis].weight) = (weight[axis][0], weight[axis][1]);
+        if !R::any(!(edges.held | void)) {
+            return edges;
         }
-        if R::any(!(held | void)) {
-            let (mut ulo, mut uhi) = ([u; D], [u; D]);
-            let (mut hlo, mut hhi) = ([state.h; D], [state.h; D]);
+        unroll!(axis in D => {
+            let beta = ground.beta(axis);
             if self.slopes {
-                for axis in 0..D {
-                    let (a, b) = (&near.lo[axis].state, &near.hi[axis].state);
-                    let (ua, ub) = (a.velocity(), b.velocity());
-                    // Beside a cell at rest or bare there is no smooth flow to be second order in. A velocity
-                    // reconstructed down to 0 at a held cell's face carries nothing there, and two cells push each
-                    // other for ever (silo); thin cells beside bare ones trickle for ever (mountains).
-                    let smooth = !(self.is_idle(&near.lo[axis]) | self.is_idle(&near.hi[axis]));
-                    let half = R::select(smooth, R::of(0.5), zero);
-                    let dh = half * limiter::central(state.h - a.h, b.h - state.h);
-                    (hlo[axis], hhi[axis]) = ((state.h - dh).positive(), (state.h + dh).positive());
-                    for k in 0..D {
-                        let mut du = half * limiter::central(u[k] - ua[k], ub[k] - u[k]);
-                        if k == axis {
-                            let most = Self::most_spread(state.h, dh.abs(), u[k].abs(), ground.beta(axis));
-                            du = du.min(most).max(-most);
-                        }
-                        (ulo[axis][k], uhi[axis][k]) = (u[k] - du, u[k] + du);
-                    }
-                }
+                self.spread(&near, u, axis, &mut edges);
+            } else {
+                let (lo, hi) = halves(state.h.positive(), u[axis], beta);
+                edges.half[axis] = [lo, hi];
             }
-            for axis in 0..D {
-                let beta = ground.beta(axis);
-                let (lo, hi) = (&mut edges.lo[axis], &mut edges.hi[axis]);
-                (lo.u, hi.u) = (ulo[axis], uhi[axis]);
-                lo.outward = -(hlo[axis] * lo.u[axis]);
-                hi.outward = hhi[axis] * hi.u[axis];
-                if self.slopes {
-                    lo.half = halves(hlo[axis], lo.u[axis], beta).0;
-                    hi.half = halves(hhi[axis], hi.u[axis], beta).1;
-                } else {
-                    (lo.half, hi.half) = halves(state.h.positive(), u[axis], beta);
-                }
-            }
-        }
+        });
         edges
     }
 
     #[inline(always)]
     fn flux(&self, axis: usize, left: &Self::Edges, right: &Self::Edges) -> Flux<D, R> {
         let (zero, one) = (R::zero(), R::of(1.0));
-        let (a, b) = (&left.hi[axis], &right.lo[axis]);
+        let (half_a, half_b) = (left.half[axis][1], right.half[axis][0]);
         // A held cell and a void one give nothing.
         let gives_a = !(left.held | left.void);
         let gives_b = !(right.held | right.void);
         let held = left.held | right.held;
         let mut flux = Flux { mass: zero, left: [zero; D], right: [zero; D], held };
         if R::any(gives_a | gives_b) {
-            let (half_a, half_b) = (a.half.only(gives_a), b.half.only(gives_b));
+            let (half_a, half_b) = (half_a.only(gives_a), half_b.only(gives_b));
+            let u_a = left.spread[axis].velocity(Towards::Hi, left.u);
+            let u_b = right.spread[axis].velocity(Towards::Lo, right.u);
             let both = half_a.push + half_b.push;
             let (mut share_a, mut share_b, mut push_a, mut push_b) = (one, one, both, both);
             if R::any(held) {
                 // Into a held cell goes only what is carried there, the rest of the density is reflected. It feels its
                 // neighbours' thickness through its pull; of the flux it takes the impact.
-                share_a = R::select(right.held, a.carried(), one);
-                share_b = R::select(left.held, b.carried(), one);
-                let reflected_a = R::select(right.held, half_a.reflected(a.u[axis], share_a), both);
-                let reflected_b = R::select(left.held, half_b.reflected(b.u[axis], share_b), both);
+                share_a = R::select(right.held, left.carried(axis, Towards::Hi), one);
+                share_b = R::select(left.held, right.carried(axis, Towards::Lo), one);
+                let reflected_a = R::select(right.held, half_a.reflected(u_a[axis], share_a), both);
+                let reflected_b = R::select(left.held, half_b.reflected(u_b[axis], share_b), both);
                 push_a = R::select(left.held, zero, reflected_a);
                 push_b = R::select(right.held, zero, reflected_b);
             }
             let (mass_a, mass_b) = (half_a.mass * share_a, half_b.mass * share_b);
-            let turned_a = B::turn(a.u, &left.plane, &right.plane);
-            let turned_b = B::turn(b.u, &right.plane, &left.plane);
+            let turned_a = B::turn(u_a, &left.plane, &right.plane);
+            let turned_b = B::turn(u_b, &right.plane, &left.plane);
             flux.mass = mass_a + mass_b;
-            for k in 0..D {
-                flux.left[k] = mass_a * a.u[k] + mass_b * turned_b[k];
-                flux.right[k] = mass_a * turned_a[k] + mass_b * b.u[k];
-            }
+            unroll!(k in D => {
+                flux.left[k] = mass_a * u_a[k] + mass_b * turned_b[k];
+                flux.right[k] = mass_a * turned_a[k] + mass_b * u_b[k];
+            });
             flux.left[axis] = flux.left[axis] + push_a;
             flux.right[axis] = flux.right[axis] + push_b;
         }
@@ -364,19 +437,19 @@ impl<F: Friction, const D: usize, R: Real, B: Bed<D, R>> Scheme<D, R> for Balanc
         let Flow { h, q } = here.state;
         let bed = &here.ground;
         let (mut gone, mut lost) = (zero, [zero; D]);
-        for axis in 0..D {
+        unroll!(axis in D => {
             let Faces { lo, hi } = &faces[axis];
             let lambda = dt * per[axis];
             gone = gone + lambda * (hi.mass - lo.mass);
-            for (k, lost) in lost.iter_mut().enumerate() {
-                *lost = *lost + lambda * (hi.left[k] - lo.right[k]);
-            }
-        }
+            unroll!(k in D => {
+                lost[k] = lost[k] + lambda * (hi.left[k] - lo.right[k]);
+            });
+        });
         // What holds itself or is bare, and is not touched, stays: leave out the work.
         let mut idle = (edges.held | edges.void) & gone.same(zero);
-        for k in 0..D {
+        unroll!(k in D => {
             idle = idle & lost[k].same(zero) & q[k].same(zero);
-        }
+        });
         if !R::any(!idle) {
             return here.state;
         }
@@ -387,22 +460,22 @@ impl<F: Friction, const D: usize, R: Real, B: Bed<D, R>> Scheme<D, R> for Balanc
         // keeps the map a forward-Euler step wherever the depth does not halve.
         let depth = if self.slopes { h.min(new + new) } else { new }.positive();
         let (mut rise, mut weight, mut bend) = ([[zero; D]; 2], [[zero; D]; 2], [zero; D]);
-        for axis in 0..D {
+        unroll!(axis in D => {
             let Faces { lo, hi } = &faces[axis];
-            let (below, above) = (&edges.lo[axis], &edges.hi[axis]);
-            (rise[0][axis], rise[1][axis]) = (below.beside(lo.held), above.beside(hi.held));
+            rise[0][axis] = edges.beside(axis, Towards::Lo, lo.held);
+            rise[1][axis] = edges.beside(axis, Towards::Hi, hi.held);
             // The pressure in the flux, and what mends it, goes where a cell of the face is held.
-            weight[0][axis] = R::select(lo.held, zero, below.weight);
-            weight[1][axis] = R::select(hi.held, zero, above.weight);
+            weight[0][axis] = R::select(lo.held, zero, edges.weight[axis][0]);
+            weight[1][axis] = R::select(hi.held, zero, edges.weight[axis][1]);
             let half = R::of(0.5);
             bend[axis] = R::select(lo.held, zero, half) + R::select(hi.held, zero, half);
-        }
+        });
         let pull = bed.pull(rise[0], rise[1], per);
         let cross = bed.cross(weight[0], weight[1], per);
-        for k in 0..D {
+        unroll!(k in D => {
             let bent = bed.bend(k) * h * bend[k];
             moved[k] = moved[k] + dt * depth * (pull[k] + cross[k] + bent);
-        }
+        });
 
         let thickness = bed.thickness(new).max(R::of(f64::MIN_POSITIVE));
         let old = edges.u;
@@ -434,9 +507,9 @@ impl<F: Friction, const D: usize, R: Real, B: Bed<D, R>> Scheme<D, R> for Balanc
             let taken = dt * depth * (law.dry + law.drag * (speed * speed));
             let far = (taken * R::of(4.0)).lt(size) & !(still | stops | speed.le(zero));
             let share = taken / R::select(far, speed, R::of(1.0));
-            for k in 0..D {
+            unroll!(k in D => {
                 slowed[k] = R::select(far, moved[k] - share * old[k], slowed[k]);
-            }
+            });
         }
         Flow { h: new, q: slowed }
     }

@@ -24,6 +24,11 @@ impl<R: Real> Half<R> {
     pub fn none() -> Self {
         Half { mass: R::zero(), push: R::zero() }
     }
+    /// From (2/pi) h, u, c and the moments m0, m1, m2.
+    #[inline(always)]
+    fn of([scale, u, c]: [R; 3], m0: R, m1: R, m2: R) -> Self {
+        Half { mass: scale * (u * m0 + c * m1), push: scale * (c * (u * m1 + c * m2)) }
+    }
     /// Integral of xi^2 M = mass * u + push.
     #[inline(always)]
     pub fn momentum(&self, u: R) -> R {
@@ -63,13 +68,9 @@ pub fn halves<R: Real>(h: R, u: R, beta: R) -> (Half<R>, Half<R>) {
     let fourth = (x - a * r * (one - (a * a + a * a))) * R::of(0.125);
     let scale = R::of(FRAC_2_PI) * h;
     let (m0, m2) = (R::of(FRAC_PI_4), R::of(PI / 16.0));
-    let mut halves = [Half::none(); 2];
-    for (half, [m0, m1, m2]) in
-        halves.iter_mut().zip([[m0 + area, -third, m2 + fourth], [m0 - area, third, m2 - fourth]])
-    {
-        *half = Half { mass: scale * (u * m0 + c * m1), push: scale * (c * (u * m1 + c * m2)) };
-    }
-    (halves[0], halves[1])
+    let scale = [scale, u, c];
+    let left = Half::of(scale, m0 + area, -third, m2 + fourth);
+    (left, Half::of(scale, m0 - area, third, m2 - fourth))
 }
 
 #[cfg(test)]

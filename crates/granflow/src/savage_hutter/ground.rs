@@ -1,6 +1,6 @@
 //! What is fixed in a cell: the papers' chute, or a piece of a mountain.
 
-use crate::real::{Real, dot};
+use crate::real::{Real, dot, unroll};
 use crate::scheme::{Parts, parts};
 
 /// The neighbour's place along an axis.
@@ -59,9 +59,9 @@ pub trait Bed<const D: usize, R: Real>: Parts<R> {
 #[inline(always)]
 fn straight<const D: usize, R: Real>(lo: [R; D], hi: [R; D], per: [R; D]) -> [R; D] {
     let mut difference = lo;
-    for axis in 0..D {
+    unroll!(axis in D => {
         difference[axis] = (lo[axis] - hi[axis]) * (per[axis] * R::of(0.5));
-    }
+    });
     difference
 }
 
@@ -86,16 +86,16 @@ unsafe impl<const D: usize, R: Real> Parts<R> for Chute<D, R> {
     #[inline(always)]
     fn gather(part: impl Fn(usize) -> R) -> Self {
         let mut tilt = [R::zero(); D];
-        for (axis, tilt) in tilt.iter_mut().enumerate() {
-            *tilt = part(axis);
-        }
+        unroll!(axis in D => {
+            tilt[axis] = part(axis);
+        });
         Chute { tilt, beta: part(D), cos: part(D + 1), curvature: part(D + 2) }
     }
     #[inline(always)]
     fn scatter(self, mut put: impl FnMut(usize, R)) {
-        for axis in 0..D {
+        unroll!(axis in D => {
             put(axis, self.tilt[axis]);
-        }
+        });
         put(D, self.beta);
         put(D + 1, self.cos);
         put(D + 2, self.curvature);
@@ -217,9 +217,9 @@ impl<const D: usize, R: Real> Terrain<D, R> {
     #[inline(always)]
     fn metric(&self, mut v: [R; D]) -> [R; D] {
         let along = self.cos * self.cos * dot(self.slope, v);
-        for axis in 0..D {
+        unroll!(axis in D => {
             v[axis] = v[axis] - self.slope[axis] * along;
-        }
+        });
         v
     }
 }
@@ -272,13 +272,13 @@ unsafe impl<const D: usize, R: Real> Parts<R> for Terrain<D, R> {
     #[inline(always)]
     fn gather(part: impl Fn(usize) -> R) -> Self {
         let mut cell = Terrain { level: part(0), cos: part(1), fall: part(2), ..Terrain::nothing() };
-        for i in 0..D {
+        unroll!(i in D => {
             cell.slope[i] = part(3 + i);
             cell.bend[i] = part(3 + D + i);
-            for j in 0..D {
+            unroll!(j in D => {
                 cell.curvature[i][j] = part(Self::packed(i, j));
-            }
-        }
+            });
+        });
         cell
     }
     #[inline(always)]
@@ -287,14 +287,16 @@ unsafe impl<const D: usize, R: Real> Parts<R> for Terrain<D, R> {
         put(1, self.cos);
         put(2, self.fall);
         let mut next = 3 + 2 * D;
-        for i in 0..D {
+        unroll!(i in D => {
             put(3 + i, self.slope[i]);
             put(3 + D + i, self.bend[i]);
-            for j in i..D {
-                put(next, self.curvature[i][j]);
-                next += 1;
-            }
-        }
+            unroll!(j in D => {
+                if j >= i {
+                    put(next, self.curvature[i][j]);
+                    next += 1;
+                }
+            });
+        });
     }
 }
 
@@ -335,11 +337,11 @@ impl<const D: usize, R: Real> Bed<D, R> for Terrain<D, R> {
         let straight = straight(lo, hi, per);
         let c2 = self.cos * self.cos;
         let mut cross = [R::zero(); D];
-        for axis in 0..D {
+        unroll!(axis in D => {
             let mut others = straight;
             others[axis] = R::zero();
             cross[axis] = -(self.slope[axis] * (c2 * dot(self.slope, others)));
-        }
+        });
         cross
     }
     #[inline(always)]
@@ -349,9 +351,9 @@ impl<const D: usize, R: Real> Bed<D, R> for Terrain<D, R> {
     #[inline(always)]
     fn load(&self, w: [R; D]) -> R {
         let mut bent = R::zero();
-        for axis in 0..D {
+        unroll!(axis in D => {
             bent = bent + w[axis] * dot(self.curvature[axis], w);
-        }
+        });
         (self.fall + bent).positive()
     }
     #[inline(always)]
@@ -378,9 +380,9 @@ impl<const D: usize, R: Real> Bed<D, R> for Terrain<D, R> {
         let flat = left.le(R::zero());
         let stretch = R::select(flat, R::of(1.0), (whole / R::select(flat, R::of(1.0), left)).sqrt());
         let mut turned = w;
-        for axis in 0..D {
+        unroll!(axis in D => {
             turned[axis] = (w[axis] + c2 * out * to.slope[axis]) * stretch;
-        }
+        });
         turned
     }
     #[inline(always)]
@@ -399,12 +401,12 @@ impl<const D: usize, R: Real> Bed<D, R> for Terrain<D, R> {
     fn mirror(mut self, axis: usize) -> Self {
         self.slope[axis] = -self.slope[axis];
         self.bend[axis] = -self.bend[axis];
-        for other in 0..D {
+        unroll!(other in D => {
             if other != axis {
                 self.curvature[axis][other] = -self.curvature[axis][other];
                 self.curvature[other][axis] = -self.curvature[other][axis];
             }
-        }
+        });
         self
     }
 }

@@ -8,7 +8,7 @@ use super::flux::{Half, halves};
 use super::friction::{Coulomb, Friction};
 use super::ground::{Bed, Chute, Towards};
 use super::{Flow, normal};
-use crate::real::{Real, dot, each};
+use crate::real::{Real, dot, each, unroll};
 use crate::scheme::{Cell, Faces, Scheme, Side, Spacing, Watch, Window, Work, parts};
 
 /// The depth that enters the half moments at a face.
@@ -130,13 +130,13 @@ impl Kinetic {
 #[inline(always)]
 fn divergence<const D: usize, R: Real>(faces: &[Faces<Flow<D, R>>; D], lambda: [R; D]) -> Flow<D, R> {
     let mut sum = Flow::still(R::zero());
-    for axis in 0..D {
+    unroll!(axis in D => {
         let Faces { lo, hi } = &faces[axis];
         sum.h = sum.h + lambda[axis] * (hi.h - lo.h);
-        for k in 0..D {
+        unroll!(k in D => {
             sum.q[k] = sum.q[k] + lambda[axis] * (hi.q[k] - lo.q[k]);
-        }
-    }
+        });
+    });
     sum
 }
 
