@@ -2,13 +2,9 @@
 
 use crate::real::Real;
 
-/// A scheme whose values do not vary across a cell.
+/// May values have limited slopes across a cell, or are they known to be constant there?
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Constant;
-
-/// A scheme whose values may have limited slopes.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Limited;
+pub struct Varies<const LIMITED: bool>;
 
 /// The smallest of two differences of one sign, else 0: minmod(a, b).
 #[inline(always)]

@@ -6,10 +6,9 @@
 //! sum over a cell of what is left is its own source.
 
 use super::{Ground, Pile};
-use crate::limiter::{Constant, Limited, minmod};
+use crate::limiter::{Varies, minmod};
 use crate::real::{Real, each, unroll};
 use crate::scheme::{Cell, Faces, Parts, Scheme, Side, Spacing, Watch, Window, Work, parts};
-use std::marker::PhantomData;
 
 /// How a cell's values vary across it.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -26,27 +25,20 @@ pub enum Slopes {
     },
 }
 
-/// The scheme: what tells its variants apart are the slopes. Where it is known that there are none, `K` is [`Constant`].
+/// The scheme: what tells its variants apart are the slopes. Where it is known that there are none, `LIMITED` is false.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct HadelerKuttler<K = Limited> {
+pub struct HadelerKuttler<const LIMITED: bool = true> {
     /// The slopes.
     pub slopes: Slopes,
-    kind: PhantomData<K>,
-}
-
-impl<K> HadelerKuttler<K> {
-    const fn new(slopes: Slopes) -> Self {
-        HadelerKuttler { slopes, kind: PhantomData }
-    }
 }
 
 /// First order (eqs. 8-10), to be stepped by [`crate::time::EULER`].
-pub const FIRST_ORDER: HadelerKuttler = HadelerKuttler::new(Slopes::None);
+pub const FIRST_ORDER: HadelerKuttler = HadelerKuttler { slopes: Slopes::None };
 /// Second order (eqs. 16-23), to be stepped by [`crate::time::SSP_RK2`]; not well-balanced in v.
-pub const SECOND_ORDER: HadelerKuttler = HadelerKuttler::new(Slopes::Minmod);
+pub const SECOND_ORDER: HadelerKuttler = HadelerKuttler { slopes: Slopes::Minmod };
 /// Second order away from steady states, first order and well-balanced at them (eqs. 36-40), with exponent 2; to be
 /// stepped by [`crate::time::SSP_RK2`].
-pub const ADAPTIVE: HadelerKuttler = HadelerKuttler::new(Slopes::Adaptive { exponent: 2.0 });
+pub const ADAPTIVE: HadelerKuttler = HadelerKuttler { slopes: Slopes::Adaptive { exponent: 2.0 } };
 
 /// Cells along each axis at a corner.
 const TWO: usize = 2;
@@ -144,10 +136,10 @@ pub trait Kind: Copy + Send + Sync + 'static {
     /// A value.
     type Profile<R: Real>: Profile<R>;
 }
-impl Kind for Constant {
+impl Kind for Varies<false> {
     type Profile<R: Real> = Level<R>;
 }
-impl Kind for Limited {
+impl Kind for Varies<true> {
     type Profile<R: Real> = Linear<R>;
 }
 
@@ -267,7 +259,7 @@ fn linear<const D: usize, R: Real, P: Profile<R>>(
     edges
 }
 
-impl<K: Kind> HadelerKuttler<K> {
+impl<const LIMITED: bool> HadelerKuttler<LIMITED> {
     /// E of a cell (eq. 37): what the first-order scheme would change in it and at its corners,
     /// sum of |G| + h |rate of v|, h the smallest cell size.
     #[inline(always)]
@@ -404,17 +396,20 @@ fn rate_of_v<const D: usize, R: Real>(
     R::select(R::zero().lt(ground.inside), flow + (poured + mean), R::zero())
 }
 
-impl<const D: usize, R: Real, K: Kind> Scheme<D, R> for HadelerKuttler<K> {
+impl<const D: usize, R: Real, const LIMITED: bool> Scheme<D, R> for HadelerKuttler<LIMITED>
+where
+    Varies<LIMITED>: Kind,
+{
     type State = Pile<R>;
     type Ground = Ground<D, R>;
-    type Edges = Edges<D, R, K::Profile<R>>;
+    type Edges = Edges<D, R, <Varies<LIMITED> as Kind>::Profile<R>>;
     type Flux = R;
     type Corner = R;
 
     fn on<L: Real, W: Work<D, L>>(&self, work: W) -> W::Output {
         match self.slopes {
-            Slopes::None => work.with(&HadelerKuttler::<Constant>::new(Slopes::None)),
-            slopes => work.with(&HadelerKuttler::<Limited>::new(slopes)),
+            Slopes::None => work.with(&HadelerKuttler::<false> { slopes: Slopes::None }),
+            slopes => work.with(&HadelerKuttler::<true> { slopes }),
         }
     }
     #[inline(always)]

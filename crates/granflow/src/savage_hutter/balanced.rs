@@ -8,28 +8,28 @@ use super::flux::{Half, halves};
 use super::friction::Friction;
 use super::ground::{Bed, Towards};
 use super::{Flow, normal};
-use crate::limiter::{self, Constant, Limited};
+use crate::limiter::{self, Varies};
 use crate::real::{Real, each, largest, unroll};
 use crate::scheme::{Cell, Faces, Near, Parts, Scheme, Side, Spacing, Watch, Window, Work, parts};
 use std::marker::PhantomData;
 
 /// The default scheme: friction law, thinnest moving depth, order of accuracy. Where it is known that there are no slopes,
-/// `K` is [`Constant`].
+/// `LIMITED` is false.
 #[derive(Clone, Copy, Debug)]
-pub struct Balanced<F, B, K = Limited> {
+pub struct Balanced<F, B, const LIMITED: bool = true> {
     /// The friction law.
     pub friction: F,
     /// A cell thinner than this keeps what it has (units of h; 0 allowed).
     pub film: f64,
     /// Limited slopes of h and u (second order, with [`crate::time::SSP_RK2`]).
     pub slopes: bool,
-    kind: PhantomData<fn() -> (B, K)>,
+    bed: PhantomData<fn() -> B>,
 }
 
 impl<F, B> Balanced<F, B> {
     /// First order, to be stepped by [`crate::time::EULER`].
     pub fn first(friction: F, film: f64) -> Self {
-        Balanced { friction, film, slopes: false, kind: PhantomData }
+        Balanced { friction, film, slopes: false, bed: PhantomData }
     }
     /// Second order, to be stepped by [`crate::time::SSP_RK2`].
     pub fn second(friction: F, film: f64) -> Self {
@@ -103,10 +103,10 @@ pub trait Kind: Copy + Send + Sync + 'static {
     /// Along one axis.
     type Spread<const D: usize, R: Real>: Spread<D, R>;
 }
-impl Kind for Constant {
+impl Kind for Varies<false> {
     type Spread<const D: usize, R: Real> = ();
 }
-impl Kind for Limited {
+impl Kind for Varies<true> {
     type Spread<const D: usize, R: Real> = Slope<D, R>;
 }
 
@@ -166,7 +166,7 @@ pub struct Flux<const D: usize, R: Real> {
 }
 parts!([const D: usize, R: Real] Flux<D, R> { mass: R, left: [R; D], right: [R; D] } masks { held });
 
-impl<F: Friction, B: Copy, K> Balanced<F, B, K> {
+impl<F: Friction, B: Copy, const LIMITED: bool> Balanced<F, B, LIMITED> {
     /// A pull this much above the static bound still counts as held.
     const SLACK: f64 = 1.0 + 1e-10;
 
@@ -243,9 +243,14 @@ impl<F: Friction, B: Copy, K> Balanced<F, B, K> {
     }
 }
 
-type EdgesOf<const D: usize, R, B, K> = Edges<D, R, <K as Kind>::Spread<D, R>, <B as Bed<D, R>>::Plane>;
+type SpreadOf<const D: usize, R, const LIMITED: bool> = <Varies<LIMITED> as Kind>::Spread<D, R>;
+type EdgesOf<const D: usize, R, B, const LIMITED: bool> =
+    Edges<D, R, SpreadOf<D, R, LIMITED>, <B as Bed<D, R>>::Plane>;
 
-impl<F: Friction, B: Copy, K: Kind> Balanced<F, B, K> {
+impl<F: Friction, B: Copy, const LIMITED: bool> Balanced<F, B, LIMITED>
+where
+    Varies<LIMITED>: Kind,
+{
     /// Limited slopes along one axis, and the halves at the cell's two ends.
     #[inline(always)]
     fn spread<const D: usize, R: Real>(
@@ -253,7 +258,7 @@ impl<F: Friction, B: Copy, K: Kind> Balanced<F, B, K> {
         near: &Near<D, R, Flow<D, R>, B>,
         u: [R; D],
         axis: usize,
-        edges: &mut EdgesOf<D, R, B, K>,
+        edges: &mut EdgesOf<D, R, B, LIMITED>,
     ) where
         B: Bed<D, R>,
     {
@@ -270,7 +275,7 @@ impl<F: Friction, B: Copy, K: Kind> Balanced<F, B, K> {
         let beta = near.here.ground.beta(axis);
         let most = Self::most_spread(h, dh.abs(), u[axis].abs(), beta);
         du[axis] = du[axis].min(most).max(-most);
-        let spread = K::Spread::by(dh, du);
+        let spread = SpreadOf::<D, R, LIMITED>::by(dh, du);
         edges.spread[axis] = spread;
         let lo = halves(spread.depth(Towards::Lo, h), spread.velocity(Towards::Lo, u)[axis], beta).0;
         let hi = halves(spread.depth(Towards::Hi, h), spread.velocity(Towards::Hi, u)[axis], beta).1;
@@ -288,7 +293,7 @@ struct Stance<const D: usize, R> {
     holding: R,
 }
 
-impl<F: Friction, B: Copy, K> Balanced<F, B, K> {
+impl<F: Friction, B: Copy, const LIMITED: bool> Balanced<F, B, LIMITED> {
     #[inline(always)]
     fn stance<const D: usize, R: Real>(&self, near: &Near<D, R, Flow<D, R>, B>) -> Stance<D, R>
     where
@@ -309,19 +314,23 @@ impl<F: Friction, B: Copy, K> Balanced<F, B, K> {
     }
 }
 
-impl<F: Friction, const D: usize, R: Real, B: Bed<D, R>, K: Kind> Scheme<D, R> for Balanced<F, B, K> {
+impl<F: Friction, const D: usize, R: Real, B: Bed<D, R>, const LIMITED: bool> Scheme<D, R>
+    for Balanced<F, B, LIMITED>
+where
+    Varies<LIMITED>: Kind,
+{
     type State = Flow<D, R>;
     type Ground = B;
-    type Edges = Edges<D, R, K::Spread<D, R>, B::Plane>;
+    type Edges = EdgesOf<D, R, B, LIMITED>;
     type Flux = Flux<D, R>;
     type Corner = ();
 
     fn on<L: Real, W: Work<D, L>>(&self, work: W) -> W::Output {
         let Balanced { friction, film, slopes, .. } = *self;
         if slopes {
-            work.with(&Balanced::<F, B::On<L>, Limited> { friction, film, slopes, kind: PhantomData })
+            work.with(&Balanced::<F, B::On<L>, true> { friction, film, slopes, bed: PhantomData })
         } else {
-            work.with(&Balanced::<F, B::On<L>, Constant> { friction, film, slopes, kind: PhantomData })
+            work.with(&Balanced::<F, B::On<L>, false> { friction, film, slopes, bed: PhantomData })
         }
     }
 
@@ -335,7 +344,7 @@ impl<F: Friction, const D: usize, R: Real, B: Bed<D, R>, K: Kind> Scheme<D, R> f
         let mut edges = Edges {
             h: state.h,
             u,
-            spread: [K::Spread::none(); D],
+            spread: [SpreadOf::<D, R, LIMITED>::none(); D],
             half: [[Half::none(); 2]; D],
             rise: [[zero; 2]; D],
             weight: [[zero; 2]; D],
@@ -491,7 +500,7 @@ impl<F: Friction, const D: usize, R: Real, B: Bed<D, R>, K: Kind> Scheme<D, R> f
         // Slower than before, and within a step not by the last place of its depth: it has stopped.
         let mut spent = (left * dt * largest(per)).le(R::of(1e-15) * new);
         if R::any(spent) {
-            spent = spent & left.le(speed * h);
+            spent = spent & left.le(bed.square(old).sqrt() * h);
         }
         let stops = left.le(zero) | spent | new.lt(R::of(self.film)) | new.le(zero);
         let mut keep = left / R::select(stops, R::of(1.0), size);

@@ -286,14 +286,12 @@ unsafe impl<const D: usize, R: Real> Parts<R> for Terrain<D, R> {
         put(0, self.level);
         put(1, self.cos);
         put(2, self.fall);
-        let mut next = 3 + 2 * D;
         unroll!(i in D => {
             put(3 + i, self.slope[i]);
             put(3 + D + i, self.bend[i]);
             unroll!(j in D => {
                 if j >= i {
-                    put(next, self.curvature[i][j]);
-                    next += 1;
+                    put(Self::packed(i, j), self.curvature[i][j]);
                 }
             });
         });
