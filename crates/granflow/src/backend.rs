@@ -21,13 +21,19 @@ pub(crate) use tally::Count;
 pub use tally::Tally;
 
 /// Most cells side by side that are computed in one go, with the neighbour at each end.
-pub(crate) const STRIP: usize = 64;
+pub(crate) const STRIP: usize = 32;
 
 /// Largest extent of a tile along x and y. At least 6, the reach of a two-stage step; two short of whole vectors, as the
 /// edges of the two neighbours along x are needed too.
 pub const fn tile_size(dimensions: usize) -> [usize; 2] {
-    if dimensions == 1 { [16 * (STRIP - 2), 1] } else { [STRIP - 2, 16] }
+    if dimensions == 1 { [16 * (STRIP - 2), 1] } else { [STRIP - 2, 8] }
 }
+
+/// Most tiles above each other that one thread computes in one go: the rows between them are then read once.
+pub const MOST_TILES: usize = 8;
+
+/// Tiles above each other that are awake, by their numbers' places in the list.
+pub type Run = Range<usize>;
 
 /// The five ways out of the domain, as the ledger books them.
 pub const EXITS: [&str; 5] = ["left", "right", "bottom", "top", "nodata"];
@@ -59,19 +65,31 @@ pub struct Leak {
 }
 
 /// Arrays that several threads write in disjoint places.
-pub(crate) struct Sheet<'a> {
-    start: *mut f64,
+pub(crate) struct Sheet<'a, T = f64> {
+    start: *mut T,
     len: usize,
-    owner: PhantomData<&'a mut [f64]>,
+    owner: PhantomData<&'a mut [T]>,
 }
-// SAFETY: a sheet is only read and written through `get` and `put`, whose callers own disjoint places.
-unsafe impl Sync for Sheet<'_> {}
-unsafe impl Send for Sheet<'_> {}
+// SAFETY: a sheet is only read and written through its unsafe functions, whose callers own disjoint places.
+unsafe impl<T: Send> Sync for Sheet<'_, T> {}
+unsafe impl<T: Send> Send for Sheet<'_, T> {}
 
-impl<'a> Sheet<'a> {
-    pub(crate) fn new(values: &'a mut [f64]) -> Self {
+impl<'a, T> Sheet<'a, T> {
+    pub(crate) fn new(values: &'a mut [T]) -> Self {
         Sheet { start: values.as_mut_ptr(), len: values.len(), owner: PhantomData }
     }
+    /// Some of the places.
+    ///
+    /// # Safety
+    /// Nobody else uses them during the life of the sheet.
+    unsafe fn slice(&self, places: Range<usize>) -> &'a mut [T] {
+        assert!(places.start <= places.end && places.end <= self.len);
+        // SAFETY: in bounds, and nobody else uses these places.
+        unsafe { std::slice::from_raw_parts_mut(self.start.add(places.start), places.len()) }
+    }
+}
+
+impl Sheet<'_> {
     /// Where `place` lies.
     #[inline(always)]
     pub(crate) fn at(&self, place: usize) -> *const f64 {
@@ -123,12 +141,12 @@ pub struct Sweep<'a, const D: usize> {
 }
 
 impl<const D: usize> Sweep<'_, D> {
-    /// Compute the tiles numbered in `awake`, write `to` (and `maps` in the last stage), leave a tally each.
+    /// Compute the tiles numbered in `awake`, in runs, write `to` (and `maps` in the last stage), leave a tally each.
     pub fn run<S: Scheme<D, f64>>(
         &self,
         scheme: &S,
         instructions: Instructions,
-        (tiles, awake): (&[Tile], &[u32]),
+        (tiles, awake, runs): (&[Tile], &[u32], &[Run]),
         to: &mut Field,
         maps: Option<&mut Maps>,
         tallies: &mut [Tally],
@@ -136,8 +154,8 @@ impl<const D: usize> Sweep<'_, D> {
         let mut parts = to.parts.iter_mut();
         let to = std::array::from_fn(|_| parts.next().map(|values| Sheet::new(values)));
         let maps = maps.map(|maps| maps.sheets());
-        let tallies = &mut tallies[..awake.len()];
-        instructions.run(Tiles { sweep: self, scheme, tiles, awake, to, maps, tallies });
+        let tallies = Sheet::new(&mut tallies[..awake.len()]);
+        instructions.run(Tiles { sweep: self, scheme, tiles, awake, runs, to, maps, tallies });
     }
 }
 
@@ -147,9 +165,10 @@ struct Tiles<'a, const D: usize, S> {
     scheme: &'a S,
     tiles: &'a [Tile],
     awake: &'a [u32],
+    runs: &'a [Run],
     to: [Option<Sheet<'a>>; MOST_PARTS],
     maps: Option<[Sheet<'a>; 4]>,
-    tallies: &'a mut [Tally],
+    tallies: Sheet<'a, Tally>,
 }
 
 impl<const D: usize, S: Scheme<D, f64>> Job for Tiles<'_, D, S> {
@@ -168,12 +187,14 @@ struct OnLanes<T, I> {
 impl<const D: usize, L: Wide, S: Sync, I: Inside> Work<D, L> for OnLanes<Tiles<'_, D, S>, I> {
     type Output = ();
     fn with<T: Scheme<D, L>>(self, scheme: &T) {
-        let OnLanes { tiles: Tiles { sweep, tiles, awake, to, maps, tallies, .. }, inside } = self;
-        tallies.par_iter_mut().zip(awake.par_iter()).for_each(|(tally, &number)| {
-            let tile = &tiles[number as usize];
-            *tally = inside.call(
+        let OnLanes { tiles: Tiles { sweep, tiles, awake, runs, to, maps, tallies, .. }, inside } = self;
+        runs.par_iter().for_each(|run| {
+            let tiles = awake[run.clone()].iter().map(|number| &tiles[*number as usize]);
+            // SAFETY: every tile belongs to one run.
+            let tallies = unsafe { tallies.slice(run.clone()) };
+            inside.call(
                 #[inline(always)]
-                || Strip::<D, L, T>::tile(sweep, scheme, tile, &to, maps.as_ref()),
+                || Strip::<D, L, T>::run(sweep, scheme, tiles, &to, maps.as_ref(), tallies),
             );
         });
     }

@@ -43,7 +43,7 @@ impl<const D: usize> Grid<D> {
 pub const GHOSTS: usize = 1 + crate::scheme::REACH;
 
 /// Numbers behind the last row, so that a vector can be read from every place.
-pub(crate) const ROOM: usize = 16;
+pub(crate) const ROOM: usize = 2 * crate::lanes::MOST_LANES;
 
 /// Rows of the padded arrays: x fastest, ghosts included; one row in one dimension.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

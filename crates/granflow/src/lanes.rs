@@ -1,9 +1,19 @@
 //! Several cells side by side: the same formulas on SIMD lanes, with the same bits.
 
+mod pair;
+
 use crate::real::Real;
+#[cfg(target_arch = "aarch64")]
+use fearless_simd::aarch64::Neon;
+#[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
+use fearless_simd::x86::{Avx2, Avx512};
 use fearless_simd::{Level, Select, Simd, SimdBase, SimdFloat, SimdMask};
+use pair::Pair;
 use std::fmt::{Debug, Formatter, Result};
 use std::ops::{Add, BitAnd, BitOr, Div, Mul, Neg, Not, Range, Sub};
+
+/// Most numbers side by side.
+pub(crate) const MOST_LANES: usize = 16;
 
 /// A number, or several, that lie side by side in memory.
 pub(crate) trait Wide: Real {
@@ -29,14 +39,14 @@ pub(crate) trait Wide: Real {
             // SAFETY: as the caller promises.
             return unsafe { Self::load(from) };
         }
-        let mut numbers = [0.0; 8];
+        let mut numbers = [0.0; MOST_LANES];
         for k in 0..Self::WIDTH {
             if Self::holds(mask, k) {
                 // SAFETY: as the caller promises.
                 numbers[k] = unsafe { *from.add(k) };
             }
         }
-        // SAFETY: no lanes are wider than eight.
+        // SAFETY: there are no more lanes.
         unsafe { Self::load(numbers.as_ptr()) }
     }
     /// Write those of `mask`.
@@ -49,8 +59,8 @@ pub(crate) trait Wide: Real {
             // SAFETY: as the caller promises.
             return unsafe { self.store(to) };
         }
-        let mut numbers = [0.0; 8];
-        // SAFETY: no lanes are wider than eight.
+        let mut numbers = [0.0; MOST_LANES];
+        // SAFETY: there are no more lanes.
         unsafe { self.store(numbers.as_mut_ptr()) };
         for k in 0..Self::WIDTH {
             if Self::holds(mask, k) {
@@ -162,22 +172,19 @@ impl<S: Simd> Inside for With<S> {
     }
 }
 
-fn on<S: Simd, J: Job>(simd: S, job: J) -> J::Output {
-    job.run::<Lanes<S>>(With(simd))
-}
 
 impl Instructions {
     /// Let `job` use them.
     pub(crate) fn run<J: Job>(self, job: J) -> J::Output {
         match (self, Level::new()) {
             #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
-            (Instructions::Widest, Level::Avx512(simd)) => on(simd, job),
+            (Instructions::Widest, Level::Avx512(simd)) => job.run::<Lanes<Avx512>>(With(simd)),
             #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
             (Instructions::Widest | Instructions::Narrow, level) if level.as_avx2().is_some() => {
-                on(level.as_avx2().expect("just seen"), job)
+                job.run::<Pair<Lanes<Avx2>>>(With(level.as_avx2().expect("just seen")))
             }
             #[cfg(target_arch = "aarch64")]
-            (Instructions::Widest | Instructions::Narrow, Level::Neon(simd)) => on(simd, job),
+            (Instructions::Widest | Instructions::Narrow, Level::Neon(simd)) => job.run::<Pair<Lanes<Neon>>>(With(simd)),
             _ => job.run::<f64>(Anywhere),
         }
     }
@@ -341,7 +348,8 @@ impl<S: Simd> Wide for Lanes<S> {
     }
     #[inline(always)]
     fn within(range: Range<usize>) -> Where<S> {
-        let bits = (!0 << range.start) & !(!0 << range.end);
+        let up_to = |k: usize| !(!0_u64 << k.min(63));
+        let bits = up_to(range.end) & !up_to(range.start);
         Where(S::mask64s::from_bitmask(Self::proof(), bits & ((1 << Self::WIDTH) - 1)))
     }
     #[inline(always)]

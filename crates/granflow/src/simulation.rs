@@ -1,6 +1,6 @@
 //! A run in memory: fields, clock, tiles and ledger.
 
-use crate::backend::{Count, EXITS, Leak, MOST_PARTS, STRIP, Sweep, Tally, Tile, tile_size};
+use crate::backend::{Count, EXITS, Leak, MOST_PARTS, MOST_TILES, Run, STRIP, Sweep, Tally, Tile, tile_size};
 use crate::boundary;
 use crate::field::Field;
 use crate::grid::{GHOSTS, Grid, Layout};
@@ -95,6 +95,7 @@ pub struct Simulation<const D: usize, S: Scheme<D, f64>> {
     tallies: Vec<Tally>,
     quiet: Vec<bool>,
     awake: Vec<u32>,
+    runs: Vec<Run>,
     found: Vec<Tally>,
     /// Summary maps, kept while present.
     pub maps: Option<Maps>,
@@ -153,6 +154,7 @@ impl<const D: usize, S: Scheme<D, f64>> Simulation<D, S> {
             tallies: vec![Tally::NONE; tiles.len()],
             quiet: vec![false; tiles.len()],
             awake: Vec::with_capacity(tiles.len()),
+            runs: Vec::with_capacity(tiles.len()),
             found: vec![Tally::NONE; tiles.len()],
             grounds: bed,
             maps: None,
@@ -469,7 +471,7 @@ impl<const D: usize, S: Scheme<D, f64>> Simulation<D, S> {
                 leaks: &self.leaks,
             };
             let maps = if last { self.maps.as_mut() } else { None };
-            let (tiles, found) = ((&*self.tiles, &*self.awake), &mut *self.found);
+            let (tiles, found) = ((&*self.tiles, &*self.awake, &*self.runs), &mut *self.found);
             sweep.run(&self.scheme, self.instructions, tiles, &mut self.next, maps, found);
             std::mem::swap(&mut self.now, &mut self.next);
             out = out.map(|o| o * (1.0 - keep));
@@ -505,16 +507,24 @@ impl<const D: usize, S: Scheme<D, f64>> Simulation<D, S> {
         self.quiet.fill(false);
     }
 
-    /// Number the tiles that something can happen in.
+    /// Number the tiles that something can happen in, column by column, in runs of tiles above each other.
     fn wake(&mut self) {
         self.awake.clear();
+        self.runs.clear();
         let (across, up) = (self.across, self.tiles.len() / self.across);
-        for y in 0..up {
-            for x in 0..across {
+        for x in 0..across {
+            let mut from = self.awake.len();
+            for y in 0..up {
                 let loud = (y.saturating_sub(1)..(y + 2).min(up))
                     .any(|v| (x.saturating_sub(1)..(x + 2).min(across)).any(|u| !self.quiet[v * across + u]));
-                if loud || self.wraps(x, y, across, up) {
+                let awake = loud || self.wraps(x, y, across, up);
+                if awake {
                     self.awake.push((y * across + x) as u32);
+                }
+                let count = self.awake.len() - from;
+                if count > 0 && (!awake || y + 1 == up || count == MOST_TILES) {
+                    self.runs.push(from..from + count);
+                    from += count;
                 }
             }
         }
@@ -524,8 +534,8 @@ impl<const D: usize, S: Scheme<D, f64>> Simulation<D, S> {
     fn wraps(&self, x: usize, y: usize, across: usize, up: usize) -> bool {
         let periodic = |axis: usize| self.grid.boundary[axis][0] == Boundary::Periodic;
         let at_end = |place: usize, count: usize| place == 0 || place + 1 == count;
-        let all_quiet = self.quiet.iter().all(|quiet| *quiet);
-        !all_quiet && ((periodic(0) && at_end(x, across)) || (D > 1 && periodic(D - 1) && at_end(y, up)))
+        let joined = (periodic(0) && at_end(x, across)) || (D > 1 && periodic(D - 1) && at_end(y, up));
+        joined && !self.quiet.iter().all(|quiet| *quiet)
     }
 
     /// The numbers that a restart needs: time, step, updates, and the books.

@@ -1,12 +1,12 @@
 //! The rows that a strip is computed from, small enough for the first-level cache.
 
 use super::STRIP;
-use crate::lanes::Wide;
+use crate::lanes::{MOST_LANES, Wide};
 use crate::scheme::Parts;
 use std::mem::MaybeUninit;
 
 /// Room for a vector before and behind the strip.
-const ROOM: usize = 8;
+const ROOM: usize = MOST_LANES;
 /// Numbers in a row.
 const ROW: usize = ROOM + STRIP + ROOM;
 
@@ -21,7 +21,7 @@ impl<const MOST: usize> Row<MOST> {
     /// They have been put; or `at` is -1, or one vector reaches behind the end, and [`Row::mend`] has been called.
     #[inline(always)]
     pub(super) unsafe fn get<L: Wide, P: Parts<L>>(&self, at: isize) -> P {
-        const { assert!(P::COUNT <= MOST && L::WIDTH <= ROOM) };
+        const { assert!(P::COUNT <= MOST && L::WIDTH <= MOST_LANES) };
         debug_assert!(at >= -1 && at + L::WIDTH as isize <= (STRIP + ROOM) as isize);
         let place = (ROOM as isize + at) as usize;
         // SAFETY: inside the row, and as the caller promises.

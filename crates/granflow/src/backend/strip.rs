@@ -3,7 +3,7 @@
 use super::scratch::{MOST_FLUX, Row, Scratch};
 use super::tally::{Count, Tally};
 use super::{Leak, MOST_PARTS, STRIP, Sheet, Sweep, Tile};
-use crate::lanes::{Wide, expect};
+use crate::lanes::{MOST_LANES, Wide, expect};
 use crate::scheme::{Cell, Faces, Parts, Scheme, Side, Spacing, Watch, Window};
 use crate::field::MOST;
 
@@ -19,9 +19,15 @@ pub(super) struct Strip<'a, const D: usize, L: Wide, T: Scheme<D, L>> {
     even: Option<&'a Even>,
 }
 
+/// Put a tally where the next one belongs.
+#[inline(always)]
+fn finish<'t, L: Wide>(tallies: &mut impl Iterator<Item = &'t mut Tally>, count: Count<L>) {
+    *tallies.next().expect("a tally for every tile") = count.finish();
+}
+
 /// One ground, once for each lane.
 #[repr(align(64))]
-struct Even([[f64; 8]; MOST]);
+struct Even([[f64; MOST_LANES]; MOST]);
 
 /// The cells around one and around those that share its vector.
 struct Around<'a, const D: usize, L: Wide, T: Scheme<D, L>> {
@@ -41,21 +47,24 @@ impl<const D: usize, L: Wide, T: Scheme<D, L>> Window<D, L, T::State, T::Ground>
 }
 
 impl<'a, const D: usize, L: Wide, T: Scheme<D, L>> Strip<'a, D, L, T> {
-    /// Compute a tile.
+    /// Compute tiles that lie above each other.
     #[inline(always)]
-    pub(super) fn tile(
+    pub(super) fn run<'t>(
         sweep: &Sweep<D>,
         scheme: &T,
-        tile: &Tile,
+        tiles: impl Iterator<Item = &'t Tile> + Clone,
         to: &[Option<Sheet>; MOST_PARTS],
         maps: Option<&[Sheet; 4]>,
-    ) -> Tally {
+        tallies: &mut [Tally],
+    ) {
         const { assert!(T::State::COUNT <= MOST_PARTS && T::Ground::COUNT <= MOST) };
-        let mut even = Even([[0.0; 8]; MOST]);
-        if tile.even {
-            let place = sweep.layout.place(tile.columns[0] as isize, tile.rows[0] as isize);
+        let Some(Tile { columns, rows, .. }) = tiles.clone().next() else { return };
+        let mut even = Even([[0.0; MOST_LANES]; MOST]);
+        let is_even = tiles.clone().all(|tile| tile.even);
+        if is_even {
+            let place = sweep.layout.place(columns[0] as isize, rows[0] as isize);
             for (k, lanes) in even.0.iter_mut().take(T::Ground::COUNT).enumerate() {
-                *lanes = [sweep.grounds.part(k)[place]; 8];
+                *lanes = [sweep.grounds.part(k)[place]; MOST_LANES];
             }
         }
         let strip = Strip {
@@ -65,18 +74,9 @@ impl<'a, const D: usize, L: Wide, T: Scheme<D, L>> Strip<'a, D, L, T> {
             maps,
             spacing: Spacing::new(sweep.size),
             dt: L::of(sweep.dt),
-            even: tile.even.then_some(&even),
+            even: is_even.then_some(&even),
         };
-        let mut count = Count::new();
-        let mut scratch = Scratch::new();
-        let leaks = &sweep.leaks[tile.leaks.clone()];
-        let [mut from, end] = tile.columns;
-        while from < end {
-            let to = end.min(from + STRIP - 2);
-            strip.sweep([from, to], tile.rows, &mut scratch, &mut count, leaks);
-            from = to;
-        }
-        count.finish()
+        strip.sweep(tiles, tallies);
     }
 
     #[inline(always)]
@@ -92,85 +92,111 @@ impl<'a, const D: usize, L: Wide, T: Scheme<D, L>> Strip<'a, D, L, T> {
         }
     }
 
-    /// Compute the cells of `columns` in `rows`. Cell number 0 of the rows of `scratch` is the one left of the first.
+    /// Compute the tiles, from the lowest row to the highest; a tile of one dimension strip by strip.
     #[inline(always)]
-    fn sweep(
+    fn sweep<'t>(&self, mut tiles: impl Iterator<Item = &'t Tile> + Clone, tallies: &mut [Tally]) {
+        let (Some(highest), Some(mut tile)) = (tiles.clone().last(), tiles.next()) else { return };
+        let (columns, first, end) = (tile.columns, tile.rows[0] as isize, highest.rows[1] as isize);
+        let mut tallies = tallies.iter_mut();
+        let mut count = Count::new();
+        let mut scratch = Scratch::new();
+        for from in (columns[0]..columns[1]).step_by(STRIP - 2) {
+            let strip = [from, columns[1].min(from + STRIP - 2)];
+            // In one dimension a row has all it needs; in two the one above comes first.
+            let ahead = if D > 1 { 1 } else { 0 };
+            for number in first - ahead..end + ahead {
+                let j = number - ahead;
+                self.row(strip, number, first, &self.sweep.leaks[tile.leaks.clone()], &mut scratch, &mut count);
+                if D > 1 && j + 1 == tile.rows[1] as isize {
+                    finish(&mut tallies, std::mem::replace(&mut count, Count::new()));
+                    tile = tiles.next().unwrap_or(tile);
+                }
+            }
+        }
+        if D == 1 {
+            finish(&mut tallies, count);
+        }
+    }
+
+    /// Find the edges of row `number`, and update the row below (in one dimension the row itself), unless it lies below
+    /// the `first`. Cell 0 of the scratch is the one left of the strip.
+    #[inline(always)]
+    fn row(
         &self,
         columns: [usize; 2],
-        rows: [usize; 2],
+        number: isize,
+        first: isize,
+        leaks: &[Leak],
         scratch: &mut Scratch,
         count: &mut Count<L>,
-        leaks: &[Leak],
     ) {
         let width = columns[1] - columns[0];
         // Whole vectors, the last with cells that are not ours.
         let end = (width + 2).next_multiple_of(L::WIDTH);
         let vectors = || (0..end).step_by(L::WIDTH);
         let start = |j: isize| self.sweep.layout.place(columns[0] as isize - 1, j);
-        let first = rows[0] as isize;
-        // In one dimension a row has all it needs; in two the one above comes first.
         let ahead = if D > 1 { 1 } else { 0 };
         let Scratch { edges, across, below, corners } = scratch;
-        across.mend(T::Flux::COUNT, end);
-        for number in first - ahead..rows[1] as isize + ahead {
-            let [even, odd] = edges;
-            let (above, row) = if (number - first) % 2 == 0 { (even, odd) } else { (odd, even) };
-            let place = start(number);
-            self.expect(start(number + 2), start(number), end);
-            for m in vectors() {
-                above.put(m, self.scheme.reconstruct(&Around { strip: self, place: place + m }));
-            }
-            above.mend(if number <= first { T::Edges::COUNT } else { 0 }, end);
-            if number < first {
-                continue;
-            }
-            let row = if D > 1 { &*row } else { &*above };
-            let (above, j) = (&*above, number - ahead);
-            let [low, high] = corners;
-            for m in vectors() {
-                let at = m as isize;
-                // SAFETY: both rows have been put and mended.
-                unsafe {
-                    let (left, right): (T::Edges, T::Edges) = (row.get(at - 1), row.get(at));
-                    if j >= first {
-                        across.put(m, self.scheme.flux(0, &left, &right));
-                    }
-                    if T::Corner::COUNT > 0 {
-                        let (below, above): (T::Edges, T::Edges) = (above.get(at - 1), above.get(at));
-                        high.put(m, self.scheme.corner([[&left, &right], [&below, &above]]));
-                    }
-                }
-            }
-            high.mend(T::Corner::COUNT, end);
-            if !leaks.is_empty() {
-                self.book(count, leaks, columns, j, [(0, 0, across, 0), (0, 1, across, 1), (1, 0, below, 0)]);
-            }
-            let low = if D > 1 { &*low } else { &*high };
-            for m in vectors() {
-                let at = m as isize;
-                // SAFETY: all rows have been put and mended; `below` in the row before.
-                unsafe {
-                    let edges: T::Edges = row.get(at);
-                    let mut faces = [Faces { lo: across.get(at), hi: across.get(at + 1) }; D];
-                    if D > 1 {
-                        let up = self.scheme.flux(D - 1, &edges, &above.get(at));
-                        if j >= first {
-                            faces[D - 1] = Faces { lo: below.get(at), hi: up };
-                        }
-                        below.put(m, up);
-                    }
-                    if j >= first {
-                        let live = L::within(1_usize.saturating_sub(m)..(width + 1).saturating_sub(m));
-                        let corners = [[low.get(at), low.get(at + 1)], [high.get(at), high.get(at + 1)]];
-                        self.update(count, m, start(j) + m, live, &edges, &faces, &corners);
-                    }
-                }
-            }
-            if !leaks.is_empty() {
-                self.book(count, leaks, columns, j, [(1, 1, below, 0)]);
-            }
-            corners.swap(0, 1);
+        if number <= first {
+            across.mend(T::Flux::COUNT, end);
         }
+        let [even, odd] = edges;
+        let (above, row) = if (number - first) % 2 == 0 { (even, odd) } else { (odd, even) };
+        let place = start(number);
+        self.expect(start(number + 2), start(number), end);
+        for m in vectors() {
+            above.put(m, self.scheme.reconstruct(&Around { strip: self, place: place + m }));
+        }
+        above.mend(if number <= first { T::Edges::COUNT } else { 0 }, end);
+        if number < first {
+            return;
+        }
+        let row = if D > 1 { &*row } else { &*above };
+        let (above, j) = (&*above, number - ahead);
+        let [low, high] = corners;
+        for m in vectors() {
+            let at = m as isize;
+            // SAFETY: both rows have been put and mended.
+            unsafe {
+                let (left, right): (T::Edges, T::Edges) = (row.get(at - 1), row.get(at));
+                if j >= first {
+                    across.put(m, self.scheme.flux(0, &left, &right));
+                }
+                if T::Corner::COUNT > 0 {
+                    let (below, above): (T::Edges, T::Edges) = (above.get(at - 1), above.get(at));
+                    high.put(m, self.scheme.corner([[&left, &right], [&below, &above]]));
+                }
+            }
+        }
+        high.mend(T::Corner::COUNT, end);
+        if !leaks.is_empty() {
+            self.book(count, leaks, columns, j, [(0, 0, across, 0), (0, 1, across, 1), (1, 0, below, 0)]);
+        }
+        let low = if D > 1 { &*low } else { &*high };
+        for m in vectors() {
+            let at = m as isize;
+            // SAFETY: all rows have been put and mended; `below` in the row before.
+            unsafe {
+                let edges: T::Edges = row.get(at);
+                let mut faces = [Faces { lo: across.get(at), hi: across.get(at + 1) }; D];
+                if D > 1 {
+                    let up = self.scheme.flux(D - 1, &edges, &above.get(at));
+                    if j >= first {
+                        faces[D - 1] = Faces { lo: below.get(at), hi: up };
+                    }
+                    below.put(m, up);
+                }
+                if j >= first {
+                    let live = L::within(1_usize.saturating_sub(m)..(width + 1).saturating_sub(m));
+                    let corners = [[low.get(at), low.get(at + 1)], [high.get(at), high.get(at + 1)]];
+                    self.update(count, m, start(j) + m, live, &edges, &faces, &corners);
+                }
+            }
+        }
+        if !leaks.is_empty() {
+            self.book(count, leaks, columns, j, [(1, 1, below, 0)]);
+        }
+        corners.swap(0, 1);
     }
 
     #[inline(always)]

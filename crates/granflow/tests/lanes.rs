@@ -1,0 +1,192 @@
+//! Lanes change what a step costs, not one bit of what it gives.
+
+mod support;
+
+use granflow::grid::Grid;
+use granflow::hadeler_kuttler::scheme::{ADAPTIVE, FIRST_ORDER, HadelerKuttler, SECOND_ORDER, Slopes};
+use granflow::hadeler_kuttler::{Ground, Pile};
+use granflow::savage_hutter::Flow;
+use granflow::savage_hutter::balanced::Balanced;
+use granflow::savage_hutter::friction::{Coulomb, Friction, SamosAt, Voellmy};
+use granflow::savage_hutter::kinetic::{
+    Kinetic, VERFAHREN_1, VERFAHREN_2, VERFAHREN_3, VERFAHREN_4, VERFAHREN_5,
+};
+use granflow::scheme::{Boundary, Parts, Scheme};
+use granflow::simulation::{Instructions, Simulation, StepSize};
+use granflow::time::{EULER, SSP_RK2};
+use support::{Dice, Surface, alone, grid, plane, terrain};
+
+/// Every number that a run shows, as bits.
+fn bits<const D: usize, S: Scheme<D, f64>>(run: &Simulation<D, S>) -> Vec<u64> {
+    let mut numbers = Vec::new();
+    for cell in run.collect(|cell| cell.state) {
+        cell.scatter(|_, value| numbers.push(value));
+    }
+    let totals = run.totals();
+    numbers.extend([totals.volume, totals.film, totals.speed, totals.energy, run.rate()]);
+    numbers.extend([totals.wet, totals.moving].map(|count| count as f64));
+    numbers.extend(run.out());
+    numbers.extend(run.drift());
+    for (_, map) in run.maps.as_ref().expect("kept from the start").named() {
+        numbers.extend(map);
+    }
+    numbers.iter().map(|number| number.to_bits()).collect()
+}
+
+/// Take steps with each kind of instructions and compare after each few.
+fn compare<const D: usize, S: Scheme<D, f64>>(name: &str, build: impl Fn() -> Simulation<D, S> + Sync) {
+    alone(|| {
+        let mut scalar = build();
+        let mut narrow = build();
+        let mut widest = build();
+        narrow.use_instructions(Instructions::Narrow);
+        widest.use_instructions(Instructions::Widest);
+        scalar.use_instructions(Instructions::Scalar);
+        for step in 0..12 {
+            for run in [&mut scalar, &mut narrow, &mut widest] {
+                if step == 0 {
+                    run.keep_maps();
+                }
+                for _ in 0..3 {
+                    run.advance(f64::INFINITY).expect("finite");
+                }
+            }
+            let expected = bits(&scalar);
+            assert!(expected == bits(&narrow), "{name}, D = {D}: narrow lanes, step {step}");
+            assert!(expected == bits(&widest), "{name}, D = {D}: widest lanes, step {step}");
+        }
+        assert!(scalar.time() > 0.0);
+    });
+}
+
+/// Wet and dry, moving and still, thick and thinner than a film; a dry half for tiles to sleep in.
+fn rough<const D: usize>(
+    seed: u64,
+    cells: [usize; D],
+    positive: bool,
+) -> impl Fn([usize; D]) -> Flow<D, f64> {
+    move |index| {
+        let mut dice = Dice(seed);
+        for i in index {
+            dice = Dice((dice.roll() * 1e15) as u64 + i as u64);
+        }
+        let h = dice.between(0.5, 1.5);
+        let fastest = if positive { 1.5 } else { 0.3 };
+        let u: [f64; D] = std::array::from_fn(|_| dice.between(-fastest, fastest));
+        let lot = (dice.roll() * 210.0) as usize;
+        match lot {
+            _ if positive && index[0] > cells[0] / 2 => Flow::still(0.0),
+            _ if positive && lot.is_multiple_of(7) => Flow::still(if lot.is_multiple_of(2) { 0.0 } else { 1e-7 }),
+            _ if lot.is_multiple_of(5) => Flow::still(h),
+            _ => Flow { h, q: u.map(|u| h * u) },
+        }
+    }
+}
+
+fn on_planes<const D: usize>(cells: [usize; D], ends: Boundary) {
+    let sheet = grid(cells, [0.0; D], 0.05, ends);
+    let tilt = std::array::from_fn(|k| [0.21, -0.13][k]);
+    let run = |scheme, stages, step| {
+        Simulation::new(scheme, sheet, stages, step, |_| plane::<D>(tilt, 0.4), rough(3, cells, true))
+    };
+    let friction = Coulomb { mu: 0.3 };
+    compare("balanced", || run(Balanced::first(friction, 1e-6), EULER, StepSize::Courant(0.9)));
+    compare("balanced_2", || run(Balanced::second(friction, 1e-6), SSP_RK2, StepSize::Courant(0.45)));
+    let published = [VERFAHREN_1, VERFAHREN_2, VERFAHREN_3, VERFAHREN_4, VERFAHREN_5];
+    for (number, scheme) in published.into_iter().enumerate() {
+        compare(&format!("verfahren_{}", number + 1), || {
+            let scheme = Kinetic { friction, ..scheme };
+            // A bed that varies, so that no tile takes the ground of its first cell for all.
+            let ground = |index: [usize; D]| plane::<D>(tilt.map(|s: f64| s + 1e-3 * index[0] as f64 / cells[0] as f64), 0.4);
+            Simulation::new(scheme, sheet, EULER, StepSize::Fixed(0.002), ground, rough(4, cells, false))
+        });
+    }
+}
+
+#[test]
+fn lanes_are_the_scalar_on_planes() {
+    on_planes([1], Boundary::Open);
+    on_planes([63], Boundary::Wall);
+    on_planes([1201], Boundary::Periodic);
+    on_planes([67, 21], Boundary::Wall);
+    on_planes([130, 9], Boundary::Open);
+    on_planes([9, 40], Boundary::Periodic);
+}
+
+fn on_terrain<F: Friction>(name: &str, friction: F) {
+    let sheet: Grid<2> = grid([101, 43], [0.0; 2], 5.0, Boundary::Nothing);
+    let grounds = terrain(&sheet, |[x, y]| {
+        let outside = (x - 300.0).hypot(y - 90.0) < 22.0 || x + y < 60.0;
+        (!outside).then(|| {
+            let (a, b) = (0.02, 0.03);
+            let (s, c) = ((a * x).sin(), (b * y).cos());
+            Surface {
+                z: 30.0 * s * c - 0.3 * x,
+                slope: [30.0 * a * (a * x).cos() * c - 0.3, -30.0 * s * b * (b * y).sin()],
+                bent: [
+                    [-30.0 * a * a * s * c, -30.0 * a * b * (a * x).cos() * (b * y).sin()],
+                    [-30.0 * a * b * (a * x).cos() * (b * y).sin(), -30.0 * b * b * s * c],
+                ],
+            }
+        })
+    });
+    let start = rough(5, sheet.cells, true);
+    let number = |[i, j]: [usize; 2]| j * sheet.cells[0] + i;
+    let begin = |index: [usize; 2]| if grounds[number(index)].cos > 0.0 { start(index) } else { Flow::still(0.0) };
+    for second in [false, true] {
+        compare(name, || {
+            let (scheme, stages, step) = match second {
+                false => (Balanced::first(friction, 1e-6), EULER, StepSize::Courant(0.9)),
+                true => (Balanced::second(friction, 1e-6), SSP_RK2, StepSize::Courant(0.45)),
+            };
+            Simulation::new(scheme, sheet, stages, step, |index| grounds[number(index)], begin)
+        });
+    }
+}
+
+#[test]
+fn lanes_are_the_scalar_on_terrain() {
+    on_terrain("coulomb", Coulomb { mu: 0.4 });
+    on_terrain("voellmy", Voellmy { mu: 0.2, xi: 1500.0, gravity: 9.81 });
+    on_terrain("samosat", SamosAt { mu: 0.155, bond: 0.1, rs0: 0.222, kappa: 0.43, r: 0.05, b: 4.13 });
+}
+
+fn on_tables<const D: usize>(cells: [usize; D]) {
+    let table = grid(cells, [0.0; D], 0.02, Boundary::Nothing);
+    // A hole, a wall, a source on one side.
+    let ground = |index: [usize; D]| {
+        let last: [usize; D] = cells.map(|n| n - 1);
+        let beside = (0..D).any(|k| index[k] == last[k]);
+        let hole = D > 1 && index[0] == 5 && index[D - 1] == 6;
+        let inside = f64::from(u8::from(!beside && !hole));
+        let free = (0..D).all(|k| index[k] > 0 && index[k] < last[k]) && !hole;
+        Ground {
+            source: std::array::from_fn(|k| inside * if index[0] < cells[0] / 2 { 0.3 + 0.1 * k as f64 } else { 0.0 }),
+            bed: 0.01 * (0.7 * index[0] as f64).sin(),
+            inside,
+            weight: f64::from(u8::from(free)),
+            wall: std::array::from_fn(|k| if k == 0 && index[0] == 0 { 1.0 } else { 0.0 }),
+            hole: f64::from(u8::from(hole)),
+        }
+    };
+    let start = |index: [usize; D]| {
+        let mut dice = Dice(1 + index.iter().fold(7, |sum, i| sum * 31 + *i as u64));
+        let ground = ground(index);
+        let (u, v) = (0.004 * dice.roll(), 0.2 * dice.roll());
+        Pile { u: u * ground.weight, v: if dice.roll() < 0.3 { 0.0 } else { v * ground.inside } }
+    };
+    let third = HadelerKuttler { slopes: Slopes::Adaptive { exponent: 3.0 } };
+    for (name, scheme) in
+        [("first order", FIRST_ORDER), ("second order", SECOND_ORDER), ("adaptive", ADAPTIVE), ("adaptive, 3", third)]
+    {
+        let stages = if scheme.slopes == Slopes::None { EULER } else { SSP_RK2 };
+        compare(name, || Simulation::new(scheme, table, stages, StepSize::Courant(0.4), ground, start));
+    }
+}
+
+#[test]
+fn lanes_are_the_scalar_on_tables() {
+    on_tables([40]);
+    on_tables([1100]);
+    on_tables([71, 35]);
+}
