@@ -520,8 +520,7 @@ fn restore<const D: usize, S>(simulation: &mut Simulation<D, S>, saved: &Checkpo
 where
     S: Scheme<D, f64, State = Flow<D, f64>>,
 {
-    let clock: Vec<f64> =
-        (0..CLOCK).map_while(|k| saved.scalar(&format!("clock_{k}"))).collect();
+    let clock: Vec<f64> = (0..CLOCK).map_while(|k| saved.scalar(&format!("clock_{k}"))).collect();
     let part = |k: usize| saved.array(&format!("state_{k}")).map(<[f64]>::to_vec);
     let parts: Vec<Vec<f64>> = (0..=D).map_while(part).collect();
     if !simulation.restore(&clock, Field { parts }) {
