@@ -40,6 +40,10 @@ pub struct TablePlan {
     pub(super) slack: f64,
     /// Low and high ends of the grid along x and y.
     extent: [[f64; 2]; 2],
+    /// The kinds of edges that are open; all if `None`.
+    open: Option<Vec<Edge>>,
+    /// Where open edges are walls all the same.
+    walls: Vec<Area>,
 }
 
 /// A face of the grid with the table on one side only.
@@ -69,7 +73,14 @@ impl TableEdge {
 }
 
 impl TablePlan {
-    /// Whether the edge at each end of every node row is open: u = 0 there.
+    /// Whether an edge of this kind with this midpoint is a wall.
+    #[must_use]
+    pub fn wall(&self, kind: Edge, midpoint: [f64; 2]) -> bool {
+        let open = self.open.as_ref().is_none_or(|open| open.contains(&kind));
+        !open || self.walls.iter().any(|wall| wall.holds(midpoint, self.slack))
+    }
+
+    /// Whether a node ends an open edge: u = 0 there.
     #[must_use]
     pub fn open_nodes(&self) -> Vec<bool> {
         let [row, _] = self.nodes.counts();
@@ -117,14 +128,8 @@ impl Case {
         };
         let table = self.table.clone().unwrap_or_default();
         let mut plan = self.shape(grid, &table)?;
-        self.check_open(grid, &table)?;
-        let walls = self.walls(&table, &plan)?;
         plan.edges = edges(grid, &plan);
-        for edge in &mut plan.edges {
-            let open = table.open.as_ref().is_none_or(|open| open.contains(&edge.kind));
-            edge.wall = !open || walls.iter().any(|wall| wall.holds(edge.midpoint, plan.slack));
-        }
-        for (index, wall) in walls.iter().enumerate() {
+        for (index, wall) in plan.walls.iter().enumerate() {
             if !plan.edges.iter().any(|edge| wall.holds(edge.midpoint, plan.slack)) {
                 return Err(self.fault(
                     &format!("table.wall[{index}].on"),
@@ -174,6 +179,11 @@ impl Case {
                 enclosed[*gap] = false;
             }
         }
+        self.check_open(grid, table)?;
+        let walls = table.wall.iter().enumerate();
+        let walls = walls
+            .map(|(index, wall)| self.area(&format!("table.wall[{index}].on"), &wall.on, &centres))
+            .collect::<Result<_, _>>()?;
         let ends = |axis: &super::Axis| [axis.from, axis.to];
         Ok(TablePlan {
             hole: gap.iter().map(|gap| gap.is_some_and(|gap| enclosed[gap])).collect(),
@@ -183,6 +193,8 @@ impl Case {
             rolling: Vec::new(),
             edges: Vec::new(),
             clipped: 0.0,
+            open: table.open.clone(),
+            walls,
             pieces: count,
             centres,
             nodes,
@@ -194,13 +206,6 @@ impl Case {
 
     fn area(&self, key: &str, region: &Region, points: &Points) -> Result<Area, CaseError> {
         region.area(points, &self.folder()).map_err(|fault| self.part_fault(key, fault))
-    }
-
-    fn walls(&self, table: &Table, plan: &TablePlan) -> Result<Vec<Area>, CaseError> {
-        let walls = table.wall.iter().enumerate();
-        walls
-            .map(|(index, wall)| self.area(&format!("table.wall[{index}].on"), &wall.on, &plan.centres))
-            .collect()
     }
 
     fn check_open(&self, grid: &Grid, table: &Table) -> Result<(), CaseError> {
@@ -217,7 +222,7 @@ impl Case {
     }
 }
 
-/// The faces with the table on one side only, not yet told walls from open ones.
+/// The faces with the table on one side only.
 fn edges(grid: &Grid, plan: &TablePlan) -> Vec<TableEdge> {
     let cells = grid.cells();
     let axes = [Some(&grid.x), grid.y.as_ref()];
@@ -235,22 +240,15 @@ fn edges(grid: &Grid, plan: &TablePlan) -> Vec<TableEdge> {
             let sides = [belongs(below), belongs(face.map(Some))];
             let table = sides.map(|side| side.filter(|cell| plan.inside[*cell]));
             // the table lies below the face or above it, which then faces up or down
-            let (cell, other, outward) = match table {
-                [Some(cell), None] => (cell, sides[1], 1),
-                [None, Some(cell)] => (cell, sides[0], 0),
+            let (cell, other, up) = match table {
+                [Some(cell), None] => (cell, sides[1], true),
+                [None, Some(cell)] => (cell, sides[0], false),
                 _ => continue,
             };
-            let hole = other.is_some_and(|other| plan.hole[other]);
+            let kind = Edge::facing(axis, up, other.is_some_and(|other| plan.hole[other]));
             let mut midpoint = plan.centres.at(cell);
             midpoint[axis] = along.face(face[axis]);
-            edges.push(TableEdge {
-                axis,
-                face,
-                cell,
-                kind: if hole { Edge::Hole } else { Edge::OUTER[axis][outward] },
-                midpoint,
-                wall: false,
-            });
+            edges.push(TableEdge { axis, face, cell, kind, midpoint, wall: plan.wall(kind, midpoint) });
         }
     }
     edges

@@ -35,7 +35,7 @@ pub struct Disc {
 }
 
 /// A region whose file is read.
-#[derive(Debug)]
+#[derive(Debug, Clone, PartialEq)]
 pub(super) enum Area {
     Box([f64; 2], [f64; 2]),
     Disc(Disc),

@@ -49,8 +49,17 @@ pub enum Edge {
 }
 
 impl Edge {
-    /// The outer edges at the low and the high end of x and of y.
-    pub(super) const OUTER: [[Self; 2]; 2] = [[Self::Left, Self::Right], [Self::Bottom, Self::Top]];
+    /// The edge that faces along `axis` (0 for x), `up` or down, or is one of a hole.
+    #[must_use]
+    pub fn facing(axis: usize, up: bool, hole: bool) -> Self {
+        match (hole, axis, up) {
+            (true, ..) => Self::Hole,
+            (false, 0, false) => Self::Left,
+            (false, 0, true) => Self::Right,
+            (false, _, false) => Self::Bottom,
+            (false, _, true) => Self::Top,
+        }
+    }
 
     /// The name a case file writes.
     #[must_use]
