@@ -111,9 +111,9 @@ fn terrain_lines(terrain: &Terrain) -> Vec<(&'static str, String)> {
 
 /// What the case says, with its defaults.
 fn describe(case: &Case) -> Vec<(&'static str, String)> {
-    let friction = &case.material.friction;
+    let friction = &case.material().friction;
     let mu = friction.mu();
-    let pressure = case.material.pressure_coefficient();
+    let pressure = case.material().pressure_coefficient();
     let name = case.scheme.name;
     let order = if name == SchemeName::Balanced2 { "second" } else { "first" };
     let film = case.scheme.film();
@@ -136,7 +136,7 @@ fn describe(case: &Case) -> Vec<(&'static str, String)> {
         ("friction", format!("{}, mu = {mu:.6} ({:.3} deg)", friction.name(), mu.atan().to_degrees())),
         (
             "material",
-            format!("k = {pressure:.6}, gravity {}, density {}", case.gravity(), case.material.density()),
+            format!("k = {pressure:.6}, gravity {}, density {}", case.gravity(), case.material().density()),
         ),
         (
             "scheme",
@@ -187,7 +187,7 @@ fn grid_lines(case: &Case, grid: &Grid) -> Result<Vec<(&'static str, String)>, F
     let chute = case.chute()?;
     let slopes: Vec<f64> = grid.x.centres().iter().map(|x| chute.zeta(*x)).collect();
     let (low, high) = range(&slopes);
-    lines.push(match case.material.slope {
+    lines.push(match case.material().slope {
         Some(Slope::Profile(_)) => {
             ("slope", format!("{:.4} to {:.4} deg", low.to_degrees(), high.to_degrees()))
         }

@@ -150,7 +150,8 @@ impl Finished {
         if plane.is_terrain()
             && let Some((_, speed)) = maps.iter().find(|(name, _)| *name == "peak_speed")
         {
-            let pressure: Vec<f64> = speed.iter().map(|v| case.material.density() * v * v / 1000.0).collect();
+            let pressure: Vec<f64> =
+                speed.iter().map(|v| case.material().density() * v * v / 1000.0).collect();
             summary.add("peak_pressure_max", largest(&pressure));
             if let Some((length, drop)) = runout(&plane, &pressure) {
                 summary.runout = Some(length);

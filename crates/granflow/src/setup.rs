@@ -86,6 +86,12 @@ impl Scene {
     /// [`SetupError`] at the first file or key that cannot be used.
     pub fn load(case: &Case) -> Result<Scene, SetupError> {
         case.check()?;
+        if case.model == case::Model::HadelerKuttler {
+            let message = "the model hadeler_kuttler is read and checked, but not yet computed";
+            return Err(case
+                .fault("model", message, "`granflow check` says whether the case is in order")
+                .into());
+        }
         match (&case.grid, &case.terrain) {
             (Some(grid), _) => Ok(Self::chute(case, grid)?),
             (None, Some(terrain)) => Self::mountain(case, terrain),
@@ -96,7 +102,7 @@ impl Scene {
     }
 
     fn chute(case: &Case, grid: &case::Grid) -> Result<Scene, CaseError> {
-        let (chute, material) = (case.chute()?, &case.material);
+        let (chute, material) = (case.chute()?, case.material());
         let cells = grid.cells();
         let gravity = case.gravity();
         let column = |i: usize| {
@@ -191,7 +197,7 @@ impl Scene {
 
     /// Build the simulation that the case asks for and hand it to `work`.
     pub fn simulate<V: Visit>(&self, case: &Case, work: V) -> V::Output {
-        let material = &case.material;
+        let material = case.material();
         let density = material.density();
         let mu = material.friction.mu();
         match &material.friction {
@@ -273,7 +279,7 @@ impl Scene {
         let step = step_size(case);
         let film = case.scheme.film();
         let kinetic = |published: Kinetic| Kinetic {
-            friction: Coulomb { mu: case.material.friction.mu() },
+            friction: Coulomb { mu: case.material().friction.mu() },
             ..published
         };
         let published = match case.scheme.name {
@@ -302,6 +308,9 @@ impl Scene {
             SchemeName::Verfahren3 => VERFAHREN_3,
             SchemeName::Verfahren4 => VERFAHREN_4,
             SchemeName::Verfahren5 => VERFAHREN_5,
+            SchemeName::FirstOrder | SchemeName::SecondOrder | SchemeName::Adaptive => {
+                unreachable!("Case::check refuses schemes of another model")
+            }
         };
         work.visit(Simulation::new(kinetic(published), grid, EULER, step, ground, state))
     }
