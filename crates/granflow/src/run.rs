@@ -1,12 +1,11 @@
 //! A run from its case to its end: steps, books, frames, checkpoints, and why it stopped.
 
-use crate::backend::EXITS;
 use crate::case::{self, Case};
 use crate::field::Field;
 use crate::observe::Maps;
 use crate::output;
 use crate::output::checkpoint::{Checkpoint, case_hash};
-use crate::output::frames::{self, Frames};
+use crate::output::frames::Frames;
 use crate::output::ledger::{Entry, Ledger};
 use crate::output::summary::{StopReason, Summary};
 use crate::results::{Finished, Plane};
@@ -191,11 +190,8 @@ where
             return Ok(run);
         }
         output::remove_leftovers(directory)?;
-        let length = simulation.grid().count();
-        let field = |name: &&str| frames::Field { name: (*name).to_owned(), length };
-        let fields = plane.series().iter().map(field).collect();
-        let frames = Frames::create(&frame_file, work.case.precision(), fields)?;
-        let ledger = Ledger::create(&ledger_file)?;
+        let frames = Frames::create(&frame_file, work.case.precision(), plane.series())?;
+        let ledger = Ledger::create(&ledger_file, plane.exits())?;
         let mut run = Run::new(work, simulation, plane, frames, ledger, initial);
         run.peak_speed = run.simulation.speed();
         run.peak_energy = run.simulation.energy();
@@ -475,7 +471,7 @@ where
             version: env!("CARGO_PKG_VERSION").to_owned(),
             extra: serde_json::Map::new(),
         };
-        for (name, value) in EXITS.iter().zip(out) {
+        for (name, value) in self.plane.exits().iter().zip(out) {
             summary.add(&format!("mass_out_{name}"), value);
         }
         summary.add("kinetic_energy_final", totals.energy);
