@@ -121,10 +121,14 @@ fn iterations() {
 fn search() {
     let zero = |_| 0.0;
     let (ub, vb) = (|x: f64| x.min(1.0 - x), |x: f64| 0.5 * (x - 0.5).abs());
-    for (n, f, lambda) in [(50, 0.5, 0.45), (100, 0.5, 0.45), (50, 0.5, 0.225), (51, 0.5, 0.45), (50,2.0,0.45)] {
+    for (n, f, lambda) in
+        [(50, 0.5, 0.45), (100, 0.5, 0.45), (50, 0.5, 0.225), (51, 0.5, 0.45), (50, 2.0, 0.45)]
+    {
         println!("n {n} f {f} lambda {lambda}");
         let mut list = vec![("FO".to_string(), FIRST_ORDER)];
-        for m in [2.0, 2.25, 2.5, 2.75, 3.0, 3.25, 3.5, 4.0, 5.0] { list.push((format!("m={m}"), HadelerKuttler { slopes: Slopes::Adaptive { exponent: m } })); }
+        for m in [2.0, 2.25, 2.5, 2.75, 3.0, 3.25, 3.5, 4.0, 5.0] {
+            list.push((format!("m={m}"), HadelerKuttler { slopes: Slopes::Adaptive { exponent: m } }));
+        }
         for (name, scheme) in list {
             let mut run = line(n, scheme, f, lambda, zero, zero);
             let mut first_u = [0; 2];
@@ -133,11 +137,24 @@ fn search() {
             for k in 1..=(30.0 / lambda * n as f64 / (f * 2.0)) as usize {
                 run.advance(f64::INFINITY).unwrap();
                 let e = errors(&run, ub, |x| vb(x) * f * 2.0);
-                for (first, bound) in first_u.iter_mut().zip([1e-3, 1e-4]) { if e[0] < bound && *first == 0 { *first = k; } }
-                for (last, bound) in last_v.iter_mut().zip([1e-3, 1e-4, 1e-5]) { if e[1] >= bound * f * 2.0 { *last = k; } }
-                if e[1] < 1e-3 { least = least.min(e[1]); rise = rise.max(e[1] / least); }
+                for (first, bound) in first_u.iter_mut().zip([1e-3, 1e-4]) {
+                    if e[0] < bound && *first == 0 {
+                        *first = k;
+                    }
+                }
+                for (last, bound) in last_v.iter_mut().zip([1e-3, 1e-4, 1e-5]) {
+                    if e[1] >= bound * f * 2.0 {
+                        *last = k;
+                    }
+                }
+                if e[1] < 1e-3 {
+                    least = least.min(e[1]);
+                    rise = rise.max(e[1] / least);
+                }
             }
-            println!("{name}: u<1e-3,4 at {first_u:?}, v<1e-3,4,5 for good after {last_v:?}, v rises by {rise:.2}");
+            println!(
+                "{name}: u<1e-3,4 at {first_u:?}, v<1e-3,4,5 for good after {last_v:?}, v rises by {rise:.2}"
+            );
         }
     }
 }
