@@ -1,0 +1,208 @@
+//! The equilibrium of a growing pile at once, without time steps.
+//!
+//! -div(v grad u) = f, |grad u| = 1 where v > 0, |grad u| <= 1 elsewhere, u = 0 where sand falls off and v du/dn = 0 at walls
+//! (Aggarwal, Veerappa Gowda & Sudarshan Kumar 2023, eq. 5). The surface is the distance d to the open edges inside the table,
+//! by fast marching; the rolling layer follows by transport down the surface. Both in the discrete form of the
+//! first-order scheme, so that where the source covers the table they are its fixed point, to rounding.
+//!
+//! A source on a part of the table fixes u only where its sand rolls. Elsewhere the equilibrium is not unique:
+//! max over the places y where sand rolls of (d(y) - |x - y|)+ <= u <= d(x), and what a run comes to depends on how it began.
+
+mod march;
+mod transport;
+
+use super::table::{Edge, Table};
+use march::march;
+use transport::Slope;
+
+/// An equilibrium.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Equilibrium<const D: usize> {
+    /// Standing layer u at the nodes, x fastest: where it is not determined the least that carries the rolling sand, the
+    /// pile that the source builds on an empty table; 0 beside the table.
+    pub u: Vec<f64>,
+    /// The most that can lie there: d less the table's height; infinite where no way leads to an open edge.
+    pub most: Vec<f64>,
+    /// Rolling layer v in the cells, x fastest.
+    pub v: Vec<f64>,
+    /// Does sand roll at the node, so that u is determined?
+    pub determined: Vec<bool>,
+    /// Volume per time (in one dimension per width) that falls over each open edge.
+    pub outflow: Vec<(Edge<D>, f64)>,
+}
+
+/// Why there is no equilibrium.
+#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+pub enum Unsteady<const D: usize> {
+    /// Sand is poured on a piece of the table that it cannot leave.
+    #[error(
+        "sand poured on cell {cell:?} can never leave the table: there is no open edge on its piece of it; open one, or end the run at a time"
+    )]
+    Enclosed {
+        /// A cell with a source there.
+        cell: [usize; D],
+    },
+    /// Sand rolls into a cell in which the surface has no slope.
+    #[error(
+        "the surface at cell {cell:?} is level, sand would gather there without end: take smaller cells, the table is about one cell wide there"
+    )]
+    Trapped {
+        /// The cell.
+        cell: [usize; D],
+    },
+    /// The table is steeper than sand can lie.
+    #[error(
+        "the table rises with slope {slope} at node {node:?}, sand lies at slopes up to 1: make the table less steep"
+    )]
+    Steep {
+        /// Where.
+        node: [usize; D],
+        /// |grad b| there.
+        slope: f64,
+    },
+}
+
+/// A cell carries sand where v exceeds this share of the largest: less is the upwind transport's numerical width, and
+/// would take as many times longer to build the pile up.
+const CARRIES: f64 = 1e-6;
+
+/// The equilibrium for a `source` f (cells, x fastest) on a table with cells of `size` and height `bed` (nodes).
+pub fn equilibrium<const D: usize>(
+    table: &Table<D>,
+    size: [f64; D],
+    bed: &[f64],
+    source: &[f64],
+) -> Result<Equilibrium<D>, Unsteady<D>> {
+    check(table, size, bed, source)?;
+    let highest = surface(table, size, bed);
+    let reached: Vec<f64> =
+        highest.iter().zip(bed).map(|(s, b)| if s.is_finite() { *s } else { *b }).collect();
+    let split = rays(table, size, &highest);
+    let mut poured = vec![[0.0; D]; table.size()];
+    for place in table.places() {
+        let number = table.cell(place);
+        poured[place] = split[number].map(|share| source[number] * share);
+    }
+    let slope = Slope { table, size, surface: &reached, source: &poured };
+    let rolling = slope.carry()?;
+
+    let fastest = rolling.v.iter().copied().fold(0.0, f64::max);
+    let carries = |place: usize| rolling.v[place] > CARRIES * fastest || source[table.cell(place)] > 0.0;
+    let mut determined = vec![false; table.size()];
+    for place in table.places().filter(|place| carries(*place)) {
+        for node in table.corners(place) {
+            determined[node] = true;
+        }
+    }
+    // The least surface falls away from the sand with slope one, down to the table.
+    let fall = march(table, size, |node| determined[node].then(|| -reached[node]));
+    let least = |node: usize| (-fall[node] - bed[node]).max(0.0);
+    let touched = |node: usize| table.around(node).next().is_some();
+    let area: f64 = size.iter().product();
+    let outflow = table.open_edges().into_iter().map(|edge| {
+        let flux = rolling.flux[table.place(edge.index)][edge.axis] * area / size[edge.axis];
+        (edge, if edge.faces == crate::scheme::Side::Left { flux } else { -flux })
+    });
+    let mut v = vec![0.0; source.len()];
+    for place in table.places() {
+        v[table.cell(place)] = rolling.v[place];
+    }
+    Ok(Equilibrium {
+        u: (0..table.size()).map(|node| if touched(node) { least(node) } else { 0.0 }).collect(),
+        most: (0..table.size())
+            .map(|node| if touched(node) { (highest[node] - bed[node]).max(0.0) } else { 0.0 })
+            .collect(),
+        v,
+        determined,
+        outflow: outflow.collect(),
+    })
+}
+
+/// What stands against an equilibrium before any work is done.
+fn check<const D: usize>(
+    table: &Table<D>,
+    size: [f64; D],
+    bed: &[f64],
+    source: &[f64],
+) -> Result<(), Unsteady<D>> {
+    for piece in table.pieces().iter().filter(|piece| piece.open_edges == 0) {
+        if let Some(&cell) = piece.cells.iter().find(|c| source[table.cell(table.place(**c))] > 0.0) {
+            return Err(Unsteady::Enclosed { cell });
+        }
+    }
+    let (node, slope) = steepest(table, size, bed);
+    if slope > 1.0 + 1e-9 { Err(Unsteady::Steep { node, slope }) } else { Ok(()) }
+}
+
+/// The highest surface that sand can lie in, s = b at open edges and |grad s| = 1 elsewhere (nodes, x fastest); infinite
+/// beside the table and where no way leads to an open edge. On a level table s - b is the distance to the open edges.
+pub fn surface<const D: usize>(table: &Table<D>, size: [f64; D], bed: &[f64]) -> Vec<f64> {
+    march(table, size, |node| table.pinned(node).then(|| bed[node]))
+}
+
+/// Shares cos^2(theta), sin^2(theta) of the source along the axes (eq. 47), theta the direction of the transport ray, in
+/// the cells, x fastest.
+///
+/// The ray is the upwind gradient of the `surface` at the cell's nodes, squares being averaged. SPLIT_MEASURED
+pub fn rays<const D: usize>(table: &Table<D>, size: [f64; D], surface: &[f64]) -> Vec<[f64; D]> {
+    let mut shares = vec![[1.0 / D as f64; D]; table.cells().iter().product()];
+    let squares: Vec<[f64; D]> = (0..table.size())
+        .map(|node| {
+            if table.pinned(node) || !surface[node].is_finite() {
+                return [0.0; D];
+            }
+            upwind(table, size, surface, node).map(|slope| slope * slope)
+        })
+        .collect();
+    for place in table.places() {
+        let sum: [f64; D] = std::array::from_fn(|axis| {
+            let corner = |number: usize| squares[place + table.span(number)][axis];
+            if D == 1 { corner(0) + corner(1) } else { (corner(0) + corner(3)) + (corner(1) + corner(2)) }
+        });
+        let whole: f64 = sum.iter().sum();
+        if whole > 0.0 {
+            shares[table.cell(place)] = sum.map(|part| part / whole);
+        }
+    }
+    shares
+}
+
+/// The steepest rise of a height over the nodes of a table, and where.
+pub fn steepest<const D: usize>(table: &Table<D>, size: [f64; D], height: &[f64]) -> ([usize; D], f64) {
+    let mut most = (0, 0.0);
+    for node in 0..table.size() {
+        let slope = table.around(node).map(|(cell, corner)| {
+            let fall = falls(table, size, height, cell, corner);
+            fall.iter().map(|f| f * f).sum::<f64>().sqrt()
+        });
+        let slope = slope.fold(0.0, f64::max);
+        if slope > most.1 {
+            most = (node, slope);
+        }
+    }
+    (table.index(most.0), most.1)
+}
+
+/// How a height falls from a node, the corner numbered `corner` of a cell, along the edges of the cell, 0 where it rises.
+fn falls<const D: usize>(
+    table: &Table<D>,
+    size: [f64; D],
+    height: &[f64],
+    cell: usize,
+    corner: usize,
+) -> [f64; D] {
+    let here = height[cell + table.span(corner)];
+    std::array::from_fn(|k| ((here - height[cell + table.span(corner ^ (1 << k))]) / size[k]).max(0.0))
+}
+
+/// The steepest fall from a node along each axis.
+fn upwind<const D: usize>(table: &Table<D>, size: [f64; D], height: &[f64], node: usize) -> [f64; D] {
+    let mut most = [0.0_f64; D];
+    for (cell, corner) in table.around(node) {
+        let fall = falls(table, size, height, cell, corner);
+        for axis in 0..D {
+            most[axis] = most[axis].max(fall[axis]);
+        }
+    }
+    most
+}
