@@ -4,7 +4,8 @@ use granflow::case::{Axis, Case, Frames, Grid, SchemeName, Side, Slope, Stepping
 use granflow::savage_hutter::Flow;
 use granflow::savage_hutter::ground::Bed;
 use granflow::scheme::Scheme;
-use granflow::setup::{Scene, Visit};
+use granflow::hadeler_kuttler::scheme::HadelerKuttler;
+use granflow::setup::{Sand, Scene, Visit};
 use granflow::simulation::Simulation;
 use granflow::terrain::Terrain;
 
@@ -43,6 +44,16 @@ impl Visit for Look {
         let margin = simulation.margins().into_iter().fold(0.0, f64::max);
         Start { rate: simulation.rate(), margin, volume: totals.volume, wet: totals.wet }
     }
+
+    fn visit_sand<const D: usize>(
+        self,
+        _sand: &Sand<D>,
+        mut simulation: Simulation<D, HadelerKuttler>,
+    ) -> Start {
+        let totals = simulation.totals();
+        let margin = simulation.margins().into_iter().fold(0.0, f64::max);
+        Start { rate: simulation.rate(), margin, volume: totals.volume, wet: totals.wet }
+    }
 }
 
 /// Prints the resolved case and the estimates.
@@ -58,6 +69,8 @@ pub fn check(case: &Case) -> Result<(), Failure> {
             lines.extend(grid_lines(case, grid)?);
             cells[0] * cells[1]
         }
+        (Scene::Line(sand), _) => sand.plan.inside.len(),
+        (Scene::Table(sand), _) => sand.plan.inside.len(),
         (Scene::Chute { .. }, None) => 0,
     };
     let start = scene.simulate(case, Look);

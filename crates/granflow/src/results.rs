@@ -93,16 +93,14 @@ const REACHED: f64 = 1.0;
 
 impl Finished {
     /// Put together what a run leaves, with the maps and figures that follow from others.
-    #[expect(clippy::too_many_arguments, reason = "the parts of one struct, each needed")]
-    pub(crate) fn new(
+    #[must_use]
+    pub fn new(
         case: &Case,
         directory: PathBuf,
         plane: Plane,
         frames: Frames,
         ledger: Vec<Entry>,
         mut maps: Vec<(&'static str, Vec<f64>)>,
-        deposit: Vec<f64>,
-        margins: Vec<f64>,
         mut summary: Summary,
     ) -> Finished {
         let largest = |values: &[f64]| values.iter().fold(0.0_f64, |most, v| most.max(*v));
@@ -118,29 +116,11 @@ impl Finished {
             }
             maps.push(("peak_pressure", pressure));
         }
-        maps.push(("deposit", deposit));
-        maps.push(("yield_margin", margins));
         for (name, values) in &maps {
             if matches!(*name, "peak_thickness" | "peak_speed" | "deposit" | "yield_margin") {
                 summary.add(&format!("{name}_max"), largest(values));
             }
         }
-        let (files, film) = (case.files(), case.scheme.film());
-        Finished { directory, files, case: case.text(), plane, frames, ledger, maps, film, summary }
-    }
-
-    /// Put together what a run on a table leaves. `maps`: `source` in the cells at the end; `determined` at the nodes, of
-    /// an equilibrium found at once.
-    #[must_use]
-    pub fn pile(
-        case: &Case,
-        directory: PathBuf,
-        plane: Plane,
-        frames: Frames,
-        ledger: Vec<Entry>,
-        maps: Vec<(&'static str, Vec<f64>)>,
-        summary: Summary,
-    ) -> Finished {
         let (files, film) = (case.files(), case.scheme.film());
         Finished { directory, files, case: case.text(), plane, frames, ledger, maps, film, summary }
     }

@@ -1,7 +1,12 @@
 //! From a case file to a simulation: files read, geometry computed, the scheme chosen.
 
-use crate::case::{self, Case, CaseError, SchemeName, Stepping};
+mod sand;
+
+pub use sand::Sand;
+
+use crate::case::{self, Case, CaseError, Model, SchemeName, Stepping};
 use crate::grid::Grid;
+use crate::hadeler_kuttler::scheme::HadelerKuttler;
 use crate::raster::{Crs, Raster, RasterError};
 use crate::release::{self, ReleaseError};
 use crate::savage_hutter::Flow;
@@ -66,6 +71,10 @@ pub enum Scene {
         /// Released volume per plan area H \[m\].
         release: Vec<f64>,
     },
+    /// A table in one dimension, with what is poured on it.
+    Line(Box<Sand<1>>),
+    /// A table.
+    Table(Box<Sand<2>>),
 }
 
 /// Work on a simulation of whatever dimension and scheme.
@@ -77,6 +86,12 @@ pub trait Visit {
     where
         S: Scheme<D, f64, State = Flow<D, f64>>,
         S::Ground: Bed<D, f64>;
+    /// Do it for a growing sandpile.
+    fn visit_sand<const D: usize>(
+        self,
+        sand: &Sand<D>,
+        simulation: Simulation<D, HadelerKuttler>,
+    ) -> Self::Output;
 }
 
 impl Scene {
@@ -86,13 +101,11 @@ impl Scene {
     /// [`SetupError`] at the first file or key that cannot be used.
     pub fn load(case: &Case) -> Result<Scene, SetupError> {
         case.check()?;
-        if case.model == case::Model::HadelerKuttler {
-            let message = "the model hadeler_kuttler is read and checked, but not yet computed";
-            return Err(case
-                .fault("model", message, "`granflow check` says whether the case is in order")
-                .into());
-        }
         match (&case.grid, &case.terrain) {
+            (Some(grid), _) if case.model == Model::HadelerKuttler => Ok(match grid.y {
+                None => Scene::Line(Box::new(Sand::load(case, grid)?)),
+                Some(_) => Scene::Table(Box::new(Sand::load(case, grid)?)),
+            }),
             (Some(grid), _) => Ok(Self::chute(case, grid)?),
             (None, Some(terrain)) => Self::mountain(case, terrain),
             (None, None) => {
@@ -197,6 +210,11 @@ impl Scene {
 
     /// Build the simulation that the case asks for and hand it to `work`.
     pub fn simulate<V: Visit>(&self, case: &Case, work: V) -> V::Output {
+        match self {
+            Scene::Line(sand) => return work.visit_sand(sand, sand.simulation(case)),
+            Scene::Table(sand) => return work.visit_sand(sand, sand.simulation(case)),
+            Scene::Chute { .. } | Scene::Mountain { .. } => {}
+        }
         let material = case.material();
         let density = material.density();
         let mu = material.friction.mu();
@@ -238,7 +256,7 @@ impl Scene {
                 ))
             }
             Scene::Chute { cells, .. } if cells[1] == 1 => self.on_chute::<1, V, F>(case, friction, work),
-            Scene::Chute { .. } => self.on_chute::<2, V, F>(case, friction, work),
+            _ => self.on_chute::<2, V, F>(case, friction, work),
         }
     }
 

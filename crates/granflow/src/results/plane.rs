@@ -54,6 +54,8 @@ impl Plane {
         let centres =
             |k: usize| (0..cells[k]).map(|i| origin[k] + (i as f64 + 0.5) * size[k]).collect::<Vec<f64>>();
         let (under, release) = match scene {
+            Scene::Line(sand) => return sand.plane(),
+            Scene::Table(sand) => return sand.plane(),
             Scene::Chute { initial, .. } => (Under::Chute, initial.thickness.clone()),
             Scene::Mountain { terrain, release, .. } => {
                 let normal = |(k, volume): (usize, &f64)| volume * terrain.cosine(k);
