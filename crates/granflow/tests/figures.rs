@@ -103,6 +103,7 @@ fn profiles_show_their_curves_and_fills() {
             upper: &end,
             colour: [201, 178, 140],
         }],
+        ..Default::default()
     };
     let png = drawn("profiles", &figure);
     assert_eq!((png.width, png.height), (1600, 1000));

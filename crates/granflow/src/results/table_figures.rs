@@ -96,9 +96,8 @@ pub(super) fn pile(
 /// The figures of a pile on a plane table.
 pub(super) fn plane<'a>(story: &'a Story, table: &'a Table) -> Vec<Drawing<'a>> {
     let mut drawings = Vec::new();
-    let last =
-        (story.series("standing_layer").last(), story.series("rolling_layer").last(), story.times.last());
-    if let (Some(standing), Some(rolling), Some(&time)) = last {
+    let last = (story.series("standing_layer").last(), story.series("rolling_layer").last());
+    if let (Some(standing), Some(rolling)) = last {
         let mut ranges = Ranges::default();
         ranges.widen(table, (standing, rolling));
         let most = rolling.iter().copied().fold(0.0, f64::max);
