@@ -21,6 +21,8 @@ pub(super) struct Line<'a> {
     pub ground: &'a [f64],
     /// Where walls stand.
     pub walls: Vec<f64>,
+    /// Where the line begins and ends; found from the places where `None`.
+    pub ends: Option<[f64; 2]>,
 }
 
 /// The drawing of a quantity with this label.
@@ -60,11 +62,9 @@ pub(super) fn drawing<'a>(
         if let Some(upper) = series.last().filter(|_| line.filled) {
             fills.push(Fill { name: "", x, lower, upper, colour: PILE });
         }
-        // A wall is a block beside the line: left of the first place, or right of its own.
-        let (first, thick) = (
-            x.first().copied().unwrap_or(0.0),
-            0.015 * (x.last().unwrap_or(&1.0) - x.first().unwrap_or(&0.0)),
-        );
+        // A wall is a block beside the line: left of its first end, or right of where it stands.
+        let [first, last] = line.ends.unwrap_or_default();
+        let (thick, room) = (0.015 * (last - first), 0.02 * (last - first));
         let block = |&at: &f64| if at <= first { [at - thick, at] } else { [at, at + thick] };
         let blocks: Vec<[f64; 2]> = line.walls.iter().map(block).collect();
         for (k, x) in blocks.iter().enumerate() {
@@ -75,7 +75,11 @@ pub(super) fn drawing<'a>(
         Profiles {
             title: &story.title,
             subtitle: &story.subtitle,
-            x: Axis::new("x", ""),
+            x: match line.ends {
+                Some([a, b]) if line.walls.is_empty() => Axis::new("x", "").over(a, b),
+                Some([a, b]) => Axis::new("x", "").over(a - room, b + room),
+                None => Axis::new("x", ""),
+            },
             y: if line.filled && high > low { y.over(low, top) } else { y },
             curves: &curves,
             fills: &fills,

@@ -216,9 +216,12 @@ fn sections<'a>(
 pub(super) fn line<'a>(story: &'a Story, table: &'a Table) -> Vec<Drawing<'a>> {
     let standing = story.series("standing_layer").iter().map(|u| table.surface(u)).collect();
     let walls = table.x_node.iter().zip(&table.wall_x).filter(|(_, wall)| **wall).map(|(x, _)| *x).collect();
-    let pile = Line { x: &table.x_node, series: standing, filled: true, ground: &table.height, walls };
+    let x = &table.x_node;
+    let ends = x.first().zip(x.last()).map(|(&first, &last)| [first, last]);
+    let pile = Line { x, series: standing, filled: true, ground: &table.height, walls, ends };
     let rolling = story.series("rolling_layer").to_vec();
-    let rolling = Line { x: &story.plane.x, series: rolling, filled: true, ground: &[], walls: Vec::new() };
+    let rolling =
+        Line { x: &story.plane.x, series: rolling, filled: true, ground: &[], walls: Vec::new(), ends };
     let when = "at the start, at two instants between, and at the end";
     let mut drawings = vec![
         profiles::drawing(story, ("pile", &format!("The pile {when}.")), height(table), pile),
