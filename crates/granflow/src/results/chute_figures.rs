@@ -15,7 +15,7 @@ pub(super) fn line(story: &Story) -> Vec<Drawing<'_>> {
     let x = &story.plane.x;
     let (thickness, velocity) = (story.series("thickness"), story.series("velocity_x"));
     let profile = |name, caption: &str, label, series: &[Vec<f64>], filled: bool| {
-        let line = Line { x, series: series.to_vec(), filled, ground: &[], walls: Vec::new() };
+        let line = Line { x, series: series.to_vec(), filled, ground: &[], walls: Vec::new(), ends: None };
         profiles::drawing(story, (name, caption), label, line)
     };
     let above = |name, caption: &str, label, series: &'_ [Vec<f64>], colours| {

@@ -69,6 +69,7 @@ impl Plane {
     /// A table with these cell centres.
     #[must_use]
     pub fn table(x: Vec<f64>, y: Vec<f64>, table: Table) -> Plane {
+        debug_assert!(table.fits(&x, &y), "the parts of the table differ in length");
         Plane { x, y, under: Under::Table(table), release: Vec::new() }
     }
 

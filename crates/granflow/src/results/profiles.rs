@@ -21,6 +21,8 @@ pub(super) struct Line<'a> {
     pub ground: &'a [f64],
     /// Where walls stand.
     pub walls: Vec<f64>,
+    /// Where the line begins and ends; found from the places where `None`.
+    pub ends: Option<[f64; 2]>,
 }
 
 /// The drawing of a quantity with this label.
@@ -47,16 +49,11 @@ pub(super) fn drawing<'a>(
             let (style, colour) = style(place);
             Curve { name: &names[place], x, y: &series[k], style, colour }
         };
-        let mut curves: Vec<Curve> = shown.iter().enumerate().map(curve).collect();
+        let curves: Vec<Curve> = shown.iter().enumerate().map(curve).collect();
         let ends =
             |fold: fn(f64, f64) -> f64| series.iter().flatten().chain(line.ground).copied().fold(0.0, fold);
         let (low, high) = (ends(f64::min), ends(f64::max));
         let top = low + 1.08 * (high - low);
-        let posts: Vec<[f64; 2]> = line.walls.iter().map(|&x| [x, x]).collect();
-        for (k, x) in posts.iter().enumerate() {
-            let name = if k == 0 { "wall" } else { "" };
-            curves.push(Curve { name, x, y: &[-1e9, 1e9], colour: Some(WALL), ..Default::default() });
-        }
         let lower = (!line.ground.is_empty()).then_some(line.ground);
         let mut fills = Vec::new();
         if let Some(upper) = lower {
@@ -65,11 +62,24 @@ pub(super) fn drawing<'a>(
         if let Some(upper) = series.last().filter(|_| line.filled) {
             fills.push(Fill { name: "", x, lower, upper, colour: PILE });
         }
+        // A wall is a block beside the line: left of its first end, or right of where it stands.
+        let [first, last] = line.ends.unwrap_or_default();
+        let (thick, room) = (0.015 * (last - first), 0.02 * (last - first));
+        let block = |&at: &f64| if at <= first { [at - thick, at] } else { [at, at + thick] };
+        let blocks: Vec<[f64; 2]> = line.walls.iter().map(block).collect();
+        for (k, x) in blocks.iter().enumerate() {
+            let name = if k == 0 { "wall" } else { "" };
+            fills.push(Fill { name, x, lower: None, upper: &[1e9; 2], colour: WALL });
+        }
         let y = Axis::new(label, "");
         Profiles {
             title: &story.title,
             subtitle: &story.subtitle,
-            x: Axis::new("x", ""),
+            x: match line.ends {
+                Some([a, b]) if line.walls.is_empty() => Axis::new("x", "").over(a, b),
+                Some([a, b]) => Axis::new("x", "").over(a - room, b + room),
+                None => Axis::new("x", ""),
+            },
             y: if line.filled && high > low { y.over(low, top) } else { y },
             curves: &curves,
             fills: &fills,

@@ -106,7 +106,7 @@ impl Story {
         let table = has("standing_layer");
         let needed: &[&str] =
             if table { &["time", "x", "x_node", "rolling_layer"] } else { &["time", "x", "thickness"] };
-        for name in needed.iter().filter(|name| !has(name)) {
+        if let Some(name) = needed.iter().find(|name| !has(name)) {
             return Err(foreign(format!("it has no variable `{name}`")));
         }
         let whole = |name: &str| -> Result<Vec<f64>, FilesError> {

@@ -50,6 +50,14 @@ impl Ranges {
     }
 }
 
+/// The same axis with a little room above the greatest.
+fn roomy(axis: Axis<'static>) -> Axis<'static> {
+    match axis.range {
+        Some([low, high]) => axis.over(low, low + 1.08 * (high - low)),
+        None => axis,
+    }
+}
+
 /// The pile in perspective, the rolling layer as colour on it.
 pub(super) fn pile(
     story: &Story,
@@ -58,7 +66,10 @@ pub(super) fn pile(
     (standing, rolling): (&[f64], &[f64]),
     ranges: Ranges,
 ) -> Result<Picture, FigureError> {
-    let (x, y) = (&table.x_node, &table.y_node);
+    let (x, y, walls) = (&table.x_node, &table.y_node, table.edges(true));
+    // Walls stand a little above the sand, and who looks over them stands higher.
+    let elevation = if walls.is_empty() { None } else { Some(45.0) };
+    let z = if walls.is_empty() { ranges.height(height(table)) } else { roomy(ranges.height(height(table))) };
     let side = |c: &[f64]| c[c.len() - 1] - c[0];
     let long = side(x).max(side(y));
     let sides = [side(x) / long, side(y) / long];
@@ -67,7 +78,7 @@ pub(super) fn pile(
         subtitle,
         x: Axis::new("x", ""),
         y: Axis::new("y", ""),
-        z: ranges.height(height(table)),
+        z,
         xs: x,
         ys: y,
         values: &table.surface(standing),
@@ -75,7 +86,8 @@ pub(super) fn pile(
         colours: Colours::Thickness,
         facets: true,
         proportions: Some([sides[0].max(0.2), sides[1].max(0.2), 0.45]),
-        walls: &table.edges(true),
+        walls: &walls,
+        elevation,
         ..Default::default()
     }
     .draw()
@@ -84,9 +96,8 @@ pub(super) fn pile(
 /// The figures of a pile on a plane table.
 pub(super) fn plane<'a>(story: &'a Story, table: &'a Table) -> Vec<Drawing<'a>> {
     let mut drawings = Vec::new();
-    let last =
-        (story.series("standing_layer").last(), story.series("rolling_layer").last(), story.times.last());
-    if let (Some(standing), Some(rolling), Some(&time)) = last {
+    let last = (story.series("standing_layer").last(), story.series("rolling_layer").last());
+    if let (Some(standing), Some(rolling)) = last {
         let mut ranges = Ranges::default();
         ranges.widen(table, (standing, rolling));
         let most = rolling.iter().copied().fold(0.0, f64::max);
@@ -95,18 +106,16 @@ pub(super) fn plane<'a>(story: &'a Story, table: &'a Table) -> Vec<Drawing<'a>> 
         } else {
             String::new()
         };
-        let instant = format!("t = {}; {}", short(time), story.subtitle);
         let caption = format!("The pile at the end, coloured by the rolling layer{clipped}.");
-        let subtitle = instant.clone();
         drawings.push(Drawing::new("pile", caption, move || {
-            pile(story, table, &subtitle, (standing, rolling), ranges)
+            pile(story, table, &story.subtitle, (standing, rolling), ranges)
         }));
         let surface = table.surface(standing);
         let [low, high] = ranges.height;
         let interval = round_length(if low < high { (high - low) / 8.0 } else { 1.0 });
         let lines = format!("lines: {} every {}", height(table), short(interval));
         let caption = format!("The rolling layer at the end; {lines}, thick grey: walls{clipped}.");
-        let subtitle = format!("{lines}; {instant}");
+        let subtitle = format!("{}; {lines}", story.subtitle);
         drawings.push(Drawing::new("rolling_layer", caption, move || {
             above(story, table, &subtitle, (&surface, rolling), ranges, interval)
         }));
@@ -127,7 +136,7 @@ fn above(
 ) -> Result<Picture, FigureError> {
     let (walls, open) = (table.edges(true), table.edges(false));
     let open = open.iter().map(|edge| (edge, 1.0, [34, 34, 34]));
-    let lines: Vec<_> = open.chain(walls.iter().map(|edge| (edge, 5.0, WALL))).collect();
+    let lines: Vec<_> = open.chain(walls.iter().map(|edge| (edge, 7.0, WALL))).collect();
     let outlines: Vec<Outline> = lines
         .iter()
         .map(|&(points, width, colour)| Outline {
@@ -177,12 +186,15 @@ fn sections<'a>(
             (x, middle(field, x.len()), if square { across(field, x.len()) } else { Vec::new() })
         };
         let parts = [panel(&table.x_node, &surface), panel(&story.plane.x, rolling)];
-        let curves = parts.each_ref().map(|(x, along, across)| {
-            let first = if square { "along x, y in the middle" } else { "" };
+        let named =
+            if square { ["along x, y in the middle", "along the diagonal, against x"] } else { [""; 2] };
+        let curves: [Vec<Curve>; 2] = std::array::from_fn(|k| {
+            let (x, along, across) = &parts[k];
+            let [first, second] = if k == 0 { named } else { [""; 2] }; // one key for both panels
             let mut curves = vec![Curve { name: first, x, y: along, ..Default::default() }];
             if square {
                 let style = Style::Dashed;
-                curves.push(Curve { name: "along the diagonal", x, y: across, style, ..Default::default() });
+                curves.push(Curve { name: second, x, y: across, style, ..Default::default() });
             }
             curves
         });
@@ -204,9 +216,12 @@ fn sections<'a>(
 pub(super) fn line<'a>(story: &'a Story, table: &'a Table) -> Vec<Drawing<'a>> {
     let standing = story.series("standing_layer").iter().map(|u| table.surface(u)).collect();
     let walls = table.x_node.iter().zip(&table.wall_x).filter(|(_, wall)| **wall).map(|(x, _)| *x).collect();
-    let pile = Line { x: &table.x_node, series: standing, filled: true, ground: &table.height, walls };
+    let x = &table.x_node;
+    let ends = x.first().zip(x.last()).map(|(&first, &last)| [first, last]);
+    let pile = Line { x, series: standing, filled: true, ground: &table.height, walls, ends };
     let rolling = story.series("rolling_layer").to_vec();
-    let rolling = Line { x: &story.plane.x, series: rolling, filled: true, ground: &[], walls: Vec::new() };
+    let rolling =
+        Line { x: &story.plane.x, series: rolling, filled: true, ground: &[], walls: Vec::new(), ends };
     let when = "at the start, at two instants between, and at the end";
     let mut drawings = vec![
         profiles::drawing(story, ("pile", &format!("The pile {when}.")), height(table), pile),
@@ -233,11 +248,6 @@ pub(super) fn instant(
         pile.push(Curve { name: "table", x, y: &table.height, style, colour: Some([110, 110, 110]) });
     }
     let rolls = [Curve { x: &story.plane.x, y: rolling, colour: Some([213, 94, 0]), ..Default::default() }];
-    // A little room above the greatest.
-    let roomy = |axis: Axis<'static>| match axis.range {
-        Some([low, high]) => axis.over(low, low + 1.08 * (high - low)),
-        None => axis,
-    };
     let (above, below) = (roomy(ranges.height(height(table))), roomy(ranges.rolling()));
     History {
         title: &story.title,

@@ -33,7 +33,7 @@ pub struct Outline<'a> {
     pub dashed: bool,
     /// Its colour; dark grey where `None`.
     pub colour: Option<Rgb>,
-    /// Its width in points; 1.8 where `None`.
+    /// Its width in points; 1.8 between white rims where `None`.
     pub width: Option<f64>,
 }
 
@@ -45,8 +45,9 @@ impl Outline<'_> {
 
     pub(super) fn draw(&self, canvas: &mut Canvas, panel: &Panel) {
         let line: Vec<_> = self.points.iter().map(|&[x, y]| panel.place(x, y)).collect();
-        let casing = Pen { alpha: 0.7, ..Pen::new(WHITE, 2.0 * self.pen().width) };
-        for pen in [casing, self.pen()] {
+        let casing = Pen { alpha: 0.7, ..Pen::new(WHITE, 3.6) };
+        let cased = self.width.is_none().then_some(casing);
+        for pen in cased.into_iter().chain([self.pen()]) {
             if self.closed { canvas.ring(&line, pen) } else { canvas.line(&line, pen) }
         }
     }
@@ -179,7 +180,7 @@ impl Figure for HeatMap<'_> {
             let Some(levels) = &self.levels else { return Some(colour) };
             let (height, slope) = (heights[row * columns + column], surface.slope(column, row));
             let lines = Contours { interval: levels.interval };
-            Some(if slope.is_finite() { lines.over_colour(colour, height, slope) } else { colour })
+            Some(lines.against_colour(colour, height, slope))
         });
         if let Some(image) = image {
             canvas.image(&image, [panel.area.left, panel.area.top]);

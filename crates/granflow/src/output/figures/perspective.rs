@@ -90,6 +90,9 @@ impl Edge<'_> {
         for (&value, label) in self.ticks.at.iter().zip(&self.ticks.labels) {
             let p = eye.place(self.at(self.scale.place(value), half, 0.0));
             canvas.line(&[p, off(p, 5.0)], pen);
+            // At the foot of the upright edge a floor's edge has a label too.
+            let foot = self.along == 2 && self.scale.place(value) < 0.01;
+            let align = if foot { [align[0], 0.0] } else { align };
             canvas.text(label, off(p, 9.0), Lettering::new(TICK_SIZE, align));
             let width = super::typeface::width(label, TICK_SIZE);
             deepest = deepest.max(9.0 + width * away[0].abs() + TICK_SIZE * 0.73 * away[1].abs());
