@@ -264,7 +264,11 @@ const BAD: &[(&[&str], &str, &[&str])] = &[
     (&["table={mask={box=[0,1,0]}}"], "table.mask.box", &["found 3 numbers, expected [x0, x1, y0, y1]"]),
     (&["table={mask={box=[1,0]}}"], "table.mask.box", &["from 1 to 0 is no interval"]),
     (&[LINE, "table={mask={box=[0,1,0,1]}}"], "table.mask.box", &["the grid has no y"]),
-    (&[LINE, "table={mask={disc={centre=[0,1],radius=1}}}"], "table.mask.disc.centre", &["write centre = x"]),
+    (
+        &[LINE, "table={mask={disc={centre=[0,1],radius=1}}}"],
+        "table.mask.disc.centre",
+        &["expected centre = x"],
+    ),
     (
         &[LINE, "source=[{rate=1,on.file=\"Cargo.toml\"}]"],
         "source[0].on.file",
