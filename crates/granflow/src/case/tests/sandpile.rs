@@ -250,7 +250,7 @@ const BAD: &[(&[&str], &str, &[&str])] = &[
     // never steady
     (&["table={open=[]}"], "time.until", &["never be steady", "open an edge"]),
     (
-        &["table={open=[\"left\"],cut=[{box=[0.4,0.6]}]}", "time.end=1"],
+        &["table={open=[\"left\"],cut=[{box=[0.4,0.6]}],wall=[{on.box=[0.6,0.6]}]}", "time.end=1"],
         "time.until",
         &["never be steady", "x = 0.65"],
     ),
