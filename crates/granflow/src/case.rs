@@ -153,8 +153,13 @@ impl Case {
         let document = source.document()?;
         let parsed = Self::deserialize(toml::de::Deserializer::from(document));
         let mut case = parsed.map_err(|error| source.explain(&error))?;
-        if case.model == Model::HadelerKuttler && !source.has("scheme.name") {
-            case.scheme.name = SchemeName::Adaptive;
+        // defaults that depend on the model
+        match (case.model, &mut case.grid) {
+            (Model::SavageHutter, Some(grid)) => _ = grid.boundary.get_or_insert_default(),
+            (Model::HadelerKuttler, _) if !source.has("scheme.name") => {
+                case.scheme.name = SchemeName::Adaptive
+            }
+            _ => {}
         }
         case.source = source;
         Ok(case)

@@ -12,9 +12,10 @@ pub struct Grid {
     /// The cells along y, across the chute; without it the case is one-dimensional.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub y: Option<Axis>,
-    /// What happens at the edges: one word for all, or { x = ..., y = ... } with a word or a pair [low, high] each.
-    #[serde(default)]
-    pub boundary: Boundary,
+    /// What happens at the edges: one word for all, or { x = ..., y = ... } with a word or a pair [low, high] each (default
+    /// "open"); hadeler_kuttler has table.open instead.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub boundary: Option<Boundary>,
 }
 
 impl Grid {
@@ -40,8 +41,9 @@ impl Grid {
     #[must_use]
     pub fn sides(&self) -> [[Side; 2]; 2] {
         match &self.boundary {
-            Boundary::Uniform(side) => [[*side; 2]; 2],
-            Boundary::Axes(axes) => [axes.x.sides(), axes.y.sides()],
+            None => [[Side::Open; 2]; 2],
+            Some(Boundary::Uniform(side)) => [[*side; 2]; 2],
+            Some(Boundary::Axes(axes)) => [axes.x.sides(), axes.y.sides()],
         }
     }
 }

@@ -75,7 +75,8 @@ impl Region {
                 for [low, high] in [x, y] {
                     // an edge of the table may be a box without breadth
                     if low.is_nan() || high.is_nan() || low > high {
-                        let message = format!("from {low} to {high} is no interval: the low end comes first");
+                        let message =
+                            format!("from {low} to {high} is no interval, expected the low end first");
                         return Err(PartFault::new("box", message));
                     }
                 }
@@ -83,7 +84,7 @@ impl Region {
             }
             Self::Disc(disc) if disc.radius > 0.0 && disc.radius.is_finite() => {
                 if matches!(disc.centre, Centre::Xy(_)) && !plane {
-                    return Err(PartFault::new("disc.centre", "the grid has no y: write centre = x"));
+                    return Err(PartFault::new("disc.centre", "expected centre = x: the grid has no y"));
                 }
                 Ok(Area::Disc(disc.clone()))
             }
@@ -93,7 +94,7 @@ impl Region {
             }
             Self::File(_) if !plane => Err(PartFault::new(
                 "file",
-                "the grid has no y: polygons need two dimensions, write box = [x0, x1]",
+                "polygons need two dimensions, expected box = [x0, x1]: the grid has no y",
             )),
             Self::File(path) => {
                 let polygons = release::outlines(&folder.join(path))

@@ -33,7 +33,7 @@ impl Case {
     pub(super) fn check_model(&self) -> Result<(), CaseError> {
         match self.model {
             Model::SavageHutter => {
-                for key in SANDPILE.iter().copied().filter(|key| self.source.has(key)) {
+                if let Some(key) = SANDPILE.iter().copied().find(|key| self.source.has(key)) {
                     let message = format!("`{key}` belongs to the model hadeler_kuttler");
                     return Err(self.fault(key, message, "remove it, or write model = \"hadeler_kuttler\""));
                 }
@@ -46,7 +46,7 @@ impl Case {
                 }
             }
             Model::HadelerKuttler => {
-                for (key, cure) in AVALANCHE.iter().filter(|(key, _)| self.source.has(key)) {
+                if let Some((key, cure)) = AVALANCHE.iter().find(|(key, _)| self.source.has(key)) {
                     return Err(self.fault(key, format!("`{key}` has no meaning for hadeler_kuttler"), cure));
                 }
             }

@@ -112,10 +112,10 @@ impl Case {
             ("time.steps", self.time.steps.is_some()),
             ("time.end", self.time.end.is_some()),
             ("time.steady_rate", self.time.steady_rate.is_some()),
-            ("scheme", self.source.has("scheme")),
+            ("scheme.step", self.scheme.step.is_some()),
+            ("scheme.courant", self.scheme.courant.is_some()),
+            ("scheme.theta_exponent", self.scheme.theta_exponent.is_some()),
             ("initial", self.initial.is_some()),
-            ("output.every", self.output.every.is_some()),
-            ("output.steps", self.output.steps.is_some()),
             ("table.height", self.table.as_ref().is_some_and(table)),
         ] {
             if given {

@@ -69,19 +69,21 @@ impl TablePlan {
     /// Every pile whose |grad| is at most 1 passes, since a slope along a line is never above it.
     fn steepest(&self, surface: &[f64]) -> Option<(f64, String)> {
         let pairs = [[0, 1], [0, 2], [1, 3], [2, 3], [0, 3], [1, 2]];
-        let mut most = (1.0 + ROUNDING, None);
+        let mut most = (1.0, None);
         for (cell, _) in self.inside.iter().enumerate().filter(|(_, inside)| **inside) {
             let corners = self.corners(cell);
             for [a, b] in pairs {
                 let (Some(a), Some(b)) = (corners[a], corners[b]) else { continue };
                 let ([ax, ay], [bx, by]) = (self.nodes.at(a), self.nodes.at(b));
                 let slope = (surface[a] - surface[b]).abs() / (ax - bx).hypot(ay - by);
-                if slope > most.0 {
+                // of slopes that are the same but for rounding the first is named
+                if slope > most.0 * (1.0 + ROUNDING) {
                     most = (slope, Some([a, b]));
                 }
             }
         }
         let (slope, [a, b]) = (most.0, most.1?);
+        let slope = (slope * 1e9).round() / 1e9;
         Some((slope, format!("{} and {}", self.nodes.place(a), self.nodes.place(b))))
     }
 }

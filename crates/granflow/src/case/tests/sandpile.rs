@@ -182,6 +182,7 @@ fn a_sandpile_survives_its_own_writing() {
         let again = again.unwrap_or_else(|error| panic!("{changes:?}: {error}\n{}", case.to_toml()));
         let value = |case: &Case| serde_json::to_value(case).unwrap();
         assert_eq!(value(&case), value(&again));
+        assert_eq!(case.check().is_ok(), again.check().is_ok(), "{changes:?}");
     }
 }
 
@@ -231,10 +232,10 @@ const BAD: &[(&[&str], &str, &[&str])] = &[
     ),
     (&["time.method=direct", "time.steps=1"], "time.steps", &["no effect"]),
     (&["time.method=direct", "time.steady_rate=1"], "time.steady_rate", &["no effect"]),
-    (&["time.method=direct", "scheme.name=first_order"], "scheme", &["no effect"]),
+    (&["time.method=direct", "scheme.courant=0.1"], "scheme.courant", &["no effect"]),
     (&["time.method=direct", "initial={}"], "initial", &["no effect"]),
-    (&["time.method=direct", "output.every=1"], "output.every", &["no effect"]),
-    (&["time.method=direct", "output.steps=1"], "output.steps", &["no effect"]),
+    (&["time.method=direct", "scheme.step=0.1"], "scheme.step", &["no effect"]),
+    (&["time.method=direct", "scheme.theta_exponent=3"], "scheme.theta_exponent", &["no effect"]),
     (&["time.method=direct", "table={height=1}"], "table.height", &["no effect"]),
     (
         &["time.method=direct", "source=[{rate.formula=\"t\"}]"],
@@ -249,7 +250,7 @@ const BAD: &[(&[&str], &str, &[&str])] = &[
     // never steady
     (&["table={open=[]}"], "time.until", &["never be steady", "open an edge"]),
     (
-        &["table={open=[\"left\"],cut=[{box=[0.4,0.6]}]}", "time.end=1"],
+        &["table={open=[\"left\"],cut=[{box=[0.4,0.6]}],wall=[{on.box=[0.6,0.6]}]}", "time.end=1"],
         "time.until",
         &["never be steady", "x = 0.65"],
     ),
@@ -264,7 +265,11 @@ const BAD: &[(&[&str], &str, &[&str])] = &[
     (&["table={mask={box=[0,1,0]}}"], "table.mask.box", &["found 3 numbers, expected [x0, x1, y0, y1]"]),
     (&["table={mask={box=[1,0]}}"], "table.mask.box", &["from 1 to 0 is no interval"]),
     (&[LINE, "table={mask={box=[0,1,0,1]}}"], "table.mask.box", &["the grid has no y"]),
-    (&[LINE, "table={mask={disc={centre=[0,1],radius=1}}}"], "table.mask.disc.centre", &["write centre = x"]),
+    (
+        &[LINE, "table={mask={disc={centre=[0,1],radius=1}}}"],
+        "table.mask.disc.centre",
+        &["expected centre = x"],
+    ),
     (
         &[LINE, "source=[{rate=1,on.file=\"Cargo.toml\"}]"],
         "source[0].on.file",
@@ -351,7 +356,11 @@ fn bad_sandpiles_are_answered_with_place_and_cure() {
                 if error.key() != *key || !parts.iter().all(|part| told.contains(part)) {
                     wrong.push(format!("{changes:?}: expected {key} {parts:?}, got {}\n{told}", error.key()));
                 }
-                assert!(!error.help_lines().is_empty() || told.contains("expected"), "no cure: {told}");
+                let cured = !error.help_lines().is_empty()
+                    || ["expected", "known are"].iter().any(|word| told.contains(word));
+                if !cured {
+                    wrong.push(format!("no cure: {told}"));
+                }
             }
         }
     }
