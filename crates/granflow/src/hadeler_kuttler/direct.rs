@@ -29,6 +29,9 @@ pub struct Equilibrium<const D: usize> {
     pub determined: Vec<bool>,
     /// Volume per time (in one dimension per width) that falls over each open edge.
     pub outflow: Vec<(Edge<D>, f64)>,
+    /// Cells of a crest one cell wide along which sand rolls towards more level ground: here it leaves across the crest,
+    /// in the scheme it is dammed up, without end where the crest is level. Mostly none.
+    pub crests: Vec<[usize; D]>,
 }
 
 /// Why there is no equilibrium.
@@ -115,6 +118,7 @@ pub fn equilibrium<const D: usize>(
         v,
         determined,
         outflow: outflow.collect(),
+        crests: rolling.crests.iter().map(|place| table.index(*place)).collect(),
     })
 }
 

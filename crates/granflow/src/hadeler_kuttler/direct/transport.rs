@@ -54,8 +54,10 @@ struct Face {
     poured: f64,
 }
 
-/// Slopes and v below this share of the largest are rounding.
-const ROUNDING: f64 = 1e-12;
+/// What enters a cell is rounding below this share of the largest source.
+const ROUNDING: f64 = 1e-11;
+/// A cell is level if less than this share of its sand leaves it per time.
+const LEVEL: f64 = 1e-12;
 /// Sweeps over cells that send sand round in a circle.
 const SWEEPS: usize = 10_000;
 
@@ -63,6 +65,8 @@ const SWEEPS: usize = 10_000;
 pub(super) struct Rolling<const D: usize> {
     pub v: Vec<f64>,
     pub flux: Vec<[f64; D]>,
+    /// Cells of a crest from which sand was made to leave across it.
+    pub crests: Vec<usize>,
 }
 
 impl<const D: usize> Slope<'_, D> {
@@ -85,11 +89,57 @@ impl<const D: usize> Slope<'_, D> {
         }
     }
 
+    /// The share of its v that leaves a cell per time.
+    fn leaves(&self, faces: &[[Face; D]], place: usize) -> f64 {
+        let along = |axis: usize| {
+            let (lo, hi) = (&faces[place][axis], &faces[place + self.table.step(axis)][axis]);
+            (lo.above - hi.below) / self.size[axis]
+        };
+        (0..D).map(along).sum()
+    }
+
+    /// Open the crests on which sand would be dammed up; returns them.
+    ///
+    /// On a crest one cell wide the cell's slopes are those of both flanks, averaged: sand that rolls along the crest onto
+    /// a cell that is more level than the one before would pile up there, v -> infinity as the crest levels out. There it
+    /// leaves across the crest, at each face by the mean of the slopes of the two cells.
+    fn open_crests(&self, faces: &mut [[Face; D]]) -> Vec<usize> {
+        let table = self.table;
+        let mut opened = Vec::new();
+        for place in table.places() {
+            let near = |axis: usize| (table.below(place, axis), place + table.step(axis));
+            let slow = 2.0 * self.leaves(faces, place);
+            let dammed = |axis: usize| {
+                let (below, above) = near(axis);
+                let from_below = table.is_inside(below) && -faces[place][axis].below > slow * self.size[axis];
+                let from_above = table.is_inside(above) && faces[above][axis].above > slow * self.size[axis];
+                from_below || from_above
+            };
+            let along = (0..D).find(|axis| dammed(*axis));
+            for axis in (0..D).filter(|axis| along.is_some_and(|along| along != *axis)) {
+                let (below, above) = near(axis);
+                if table.is_inside(below) && table.is_inside(above) {
+                    let (down, up) = (faces[below][axis].above, faces[above + table.step(axis)][axis].below);
+                    if down > 0.0 && up < 0.0 {
+                        let own = faces[place][axis].above + faces[above][axis].below;
+                        opened.push((place, axis, [(own + down) / 2.0, (own + up) / 2.0]));
+                    }
+                }
+            }
+        }
+        for &(place, axis, [down, up]) in &opened {
+            faces[place][axis].above = down.max(0.0);
+            faces[place + table.step(axis)][axis].below = up.min(0.0);
+        }
+        opened.into_iter().map(|(place, ..)| place).collect()
+    }
+
     /// Solve for v: what leaves a cell is what enters it and what is poured on it.
     pub(super) fn carry(&self) -> Result<Rolling<D>, Unsteady<D>> {
         let table = self.table;
-        let faces: Vec<[Face; D]> =
+        let mut faces: Vec<[Face; D]> =
             (0..table.size()).map(|place| std::array::from_fn(|axis| self.face(place, axis))).collect();
+        let opened = self.open_crests(&mut faces);
         let mut waits = vec![0_u8; table.size()];
         for place in 0..table.size() {
             for (axis, face) in faces[place].iter().enumerate() {
@@ -105,7 +155,7 @@ impl<const D: usize> Slope<'_, D> {
         let most = self.source.iter().map(|f| f.iter().sum::<f64>()).fold(0.0, f64::max);
         let mut v = vec![0.0; table.size()];
         let cell = |v: &[f64], place: usize| -> Result<f64, Unsteady<D>> {
-            let (mut enters, mut leaves) = (0.0, 0.0);
+            let mut enters = 0.0;
             for axis in 0..D {
                 let above = place + table.step(axis);
                 let (lo, hi) = (&faces[place][axis], &faces[above][axis]);
@@ -114,15 +164,13 @@ impl<const D: usize> Slope<'_, D> {
                 let from_above = hi.above * sent(above);
                 let per = 1.0 / self.size[axis];
                 let poured = self.source[place][axis] + (hi.poured - lo.poured) * per;
-                enters = enters + ((from_below + from_above) * per + poured);
-                leaves = leaves + (lo.above - hi.below) * per;
+                enters += (from_below + from_above) * per + poured;
             }
-            let level = (0..D).map(|axis| ROUNDING / self.size[axis]).sum();
-            if leaves > level {
-                return Ok(enters / leaves);
+            if enters.abs() <= ROUNDING * most {
+                return Ok(0.0);
             }
-            let held = enters.abs() > 1e3 * ROUNDING * most;
-            if held { Err(Unsteady::Trapped { cell: table.index(place) }) } else { Ok(0.0) }
+            let leaves = self.leaves(&faces, place);
+            if leaves > LEVEL { Ok(enters / leaves) } else { Err(Unsteady::Trapped { cell: table.index(place) }) }
         };
         let mut ready: Vec<usize> = table.places().filter(|place| waits[*place] == 0).collect();
         let mut done = vec![false; table.size()];
@@ -151,7 +199,8 @@ impl<const D: usize> Slope<'_, D> {
             (face.above * v[place] + lower) + face.poured
         };
         let flux = (0..table.size()).map(|place| std::array::from_fn(|axis| flux(place, axis))).collect();
-        Ok(Rolling { v, flux })
+        let crests = opened.into_iter().filter(|place| v[*place] > 0.0).collect();
+        Ok(Rolling { v, flux, crests })
     }
 
     /// Cells that send sand round in a circle, as where two faces of a pile meet in a valley, and those below them: by
