@@ -257,12 +257,17 @@ fn corner<const D: usize, R: Real>(around: [[&Edges<D, R>; 2]; 2]) -> R {
     for (y, row) in around.iter().enumerate() {
         for (x, cell) in row.iter().enumerate() {
             let mut square = squares[0][x];
-            let mut v = if x == 0 { cell.v[0].hi() } else { cell.v[0].lo() };
+            let towards = |axis: usize, k: usize| {
+                let across = cell.v[axis].across * R::of(0.5);
+                if k == 0 { across } else { -across }
+            };
+            // The axes are added first: they may be swapped without changing a bit.
+            let mut across = towards(0, x);
             if D > 1 {
                 square = square + squares[1][y];
-                let across = cell.v[D - 1].across * R::of(0.5);
-                v = if y == 0 { v + across } else { v - across };
+                across = across + towards(D - 1, y);
             }
+            let v = cell.v[0].mid + across;
             let loss = v * (square.sqrt() - one);
             most = R::select(cell.inside, most.max(loss), most);
         }
