@@ -69,28 +69,40 @@ pub enum Unsteady<const D: usize> {
 /// would take as many times longer to build the pile up.
 const CARRIES: f64 = 1e-6;
 
-/// The equilibrium for a `source` f (cells, x fastest) on a table with cells of `size` and height `bed` (nodes).
+/// The equilibrium for a `source` f (cells, x fastest) on a table with cells of `size` and height `bed` (nodes), the source
+/// split by [`rays`].
 pub fn equilibrium<const D: usize>(
     table: &Table<D>,
     size: [f64; D],
     bed: &[f64],
     source: &[f64],
 ) -> Result<Equilibrium<D>, Unsteady<D>> {
-    check(table, size, bed, source)?;
+    let split = rays(table, size, &surface(table, size, bed));
+    let poured: Vec<[f64; D]> = split.iter().zip(source).map(|(shares, f)| shares.map(|c| f * c)).collect();
+    equilibrium_along(table, size, bed, &poured)
+}
+
+/// The equilibrium for a source that is split along the axes already (cells, x fastest), as [`super::Ground::source`] is.
+pub fn equilibrium_along<const D: usize>(
+    table: &Table<D>,
+    size: [f64; D],
+    bed: &[f64],
+    source: &[[f64; D]],
+) -> Result<Equilibrium<D>, Unsteady<D>> {
+    let fed = |place: usize| source[table.cell(place)].iter().sum::<f64>() > 0.0;
+    check(table, size, bed, fed)?;
     let highest = surface(table, size, bed);
     let reached: Vec<f64> =
         highest.iter().zip(bed).map(|(s, b)| if s.is_finite() { *s } else { *b }).collect();
-    let split = rays(table, size, &highest);
     let mut poured = vec![[0.0; D]; table.size()];
     for place in table.places() {
-        let number = table.cell(place);
-        poured[place] = split[number].map(|share| source[number] * share);
+        poured[place] = source[table.cell(place)];
     }
     let slope = Slope { table, size, surface: &reached, source: &poured };
     let rolling = slope.carry()?;
 
     let fastest = rolling.v.iter().copied().fold(0.0, f64::max);
-    let carries = |place: usize| rolling.v[place] > CARRIES * fastest || source[table.cell(place)] > 0.0;
+    let carries = |place: usize| rolling.v[place] > CARRIES * fastest || fed(place);
     let mut determined = vec![false; table.size()];
     for place in table.places().filter(|place| carries(*place)) {
         for node in table.corners(place) {
@@ -127,10 +139,10 @@ fn check<const D: usize>(
     table: &Table<D>,
     size: [f64; D],
     bed: &[f64],
-    source: &[f64],
+    fed: impl Fn(usize) -> bool,
 ) -> Result<(), Unsteady<D>> {
     for piece in table.pieces().iter().filter(|piece| piece.open_edges == 0) {
-        if let Some(&cell) = piece.cells.iter().find(|c| source[table.cell(table.place(**c))] > 0.0) {
+        if let Some(&cell) = piece.cells.iter().find(|cell| fed(table.place(**cell))) {
             return Err(Unsteady::Enclosed { cell });
         }
     }
