@@ -159,34 +159,37 @@ pub fn surface<const D: usize>(table: &Table<D>, size: [f64; D], bed: &[f64]) ->
 /// Shares cos^2(theta), sin^2(theta) of the source along the axes (eq. 47), theta the direction of the transport ray, in
 /// the cells, x fastest.
 ///
-/// The ray is the upwind gradient of the `surface` at the cell's nodes, squares being averaged. SPLIT_MEASURED
+/// tan(theta) is the ratio of the mean upwind slopes of the `surface` at the cell's nodes, without their sign. SPLIT_MEASURED
 pub fn rays<const D: usize>(table: &Table<D>, size: [f64; D], surface: &[f64]) -> Vec<[f64; D]> {
     let mut shares = vec![[1.0 / D as f64; D]; table.cells().iter().product()];
-    let squares: Vec<[f64; D]> = (0..table.size())
+    let falls: Vec<[f64; D]> = (0..table.size())
         .map(|node| {
-            if table.pinned(node) || !surface[node].is_finite() {
-                return [0.0; D];
-            }
-            upwind(table, size, surface, node).map(|slope| slope * slope)
+            let known = surface[node].is_finite() && !table.pinned(node);
+            if known { upwind(table, size, surface, node) } else { [0.0; D] }
         })
         .collect();
     for place in table.places() {
-        let sum: [f64; D] = std::array::from_fn(|axis| {
-            let corner = |number: usize| squares[place + table.span(number)][axis];
-            if D == 1 { corner(0) + corner(1) } else { (corner(0) + corner(3)) + (corner(1) + corner(2)) }
+        let squares: [f64; D] = std::array::from_fn(|axis| {
+            let corner = |number: usize| falls[place + table.span(number)][axis];
+            let sum = if D == 1 {
+                corner(0) + corner(1)
+            } else {
+                (corner(0) + corner(3)) + (corner(1) + corner(2))
+            };
+            sum * sum
         });
-        let whole: f64 = sum.iter().sum();
+        let whole: f64 = squares.iter().sum();
         if whole > 0.0 {
-            shares[table.cell(place)] = sum.map(|part| part / whole);
+            shares[table.cell(place)] = squares.map(|part| part / whole);
         }
     }
     shares
 }
 
-/// The steepest rise of a height over the nodes of a table, and where.
+/// The steepest rise of a height to a node where u is not given, and where.
 pub fn steepest<const D: usize>(table: &Table<D>, size: [f64; D], height: &[f64]) -> ([usize; D], f64) {
     let mut most = (0, 0.0);
-    for node in 0..table.size() {
+    for node in (0..table.size()).filter(|node| !table.pinned(*node)) {
         let slope = table.around(node).map(|(cell, corner)| {
             let fall = falls(table, size, height, cell, corner);
             fall.iter().map(|f| f * f).sum::<f64>().sqrt()
