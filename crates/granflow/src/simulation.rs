@@ -272,15 +272,17 @@ impl<const D: usize, S: Scheme<D, f64>> Simulation<D, S> {
     pub fn supply(&self) -> f64 {
         self.supply
     }
-    /// max over cells of |change of each part of the state|/dt in the last step; infinite before the first.
+    /// max over cells of |change of each part of the state|/dt in the last step; infinite before the first, and after a
+    /// step that was cut to less than half: a change divided by a sliver is rounding.
     pub fn drift(&self) -> [f64; MOST_PARTS] {
+        let whole = self.last_dt > 0.0 && self.last_dt > 0.5 * self.wanted_step();
         let mut most = [0.0_f64; MOST_PARTS];
         for tally in &self.tallies {
             for (most, change) in most.iter_mut().zip(tally.change) {
                 *most = most.max(change);
             }
         }
-        most.map(|change| if self.last_dt > 0.0 { change / self.last_dt } else { f64::INFINITY })
+        most.map(|change| if whole { change / self.last_dt } else { f64::INFINITY })
     }
 
     /// Every cell rests by the scheme's own proof and the last step changed nothing: nothing ever will.

@@ -5,7 +5,8 @@ use granflow::savage_hutter::Flow;
 use granflow::savage_hutter::exact::Riemann;
 use granflow::savage_hutter::ground::Bed;
 use granflow::scheme::Scheme;
-use granflow::setup::{Scene, Visit};
+use granflow::hadeler_kuttler::scheme::HadelerKuttler;
+use granflow::setup::{Sand, Scene, Visit};
 use granflow::simulation::Simulation;
 
 use super::examples::{EXAMPLES, Example, Id, SCHEMES};
@@ -198,6 +199,14 @@ struct Collect {
 
 impl Visit for Collect {
     type Output = Computed;
+
+    fn visit_sand<const D: usize>(
+        self,
+        _sand: &Sand<D>,
+        _simulation: Simulation<D, HadelerKuttler>,
+    ) -> Computed {
+        unreachable!("the examples are flows down chutes")
+    }
 
     fn visit<const D: usize, S>(self, mut simulation: Simulation<D, S>) -> Computed
     where
