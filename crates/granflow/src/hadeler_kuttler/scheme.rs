@@ -161,7 +161,8 @@ impl HadelerKuttler {
     }
 
     /// E of a cell (eq. 37): what the first-order scheme would change in it and at its corners,
-    /// sum of |G| + h |rate of v|, h the smallest cell size.
+    /// sum of |G| + h |v_t|, h the smallest cell size; in two dimensions half the sum, which is the line's where nothing
+    /// varies across.
     #[inline(always)]
     fn residual<const D: usize, R: Real>(
         &self,
@@ -187,7 +188,7 @@ impl HadelerKuttler {
         let ground = window.at([0; D]).ground;
         let rate = rate_of_v(&ground, &faces, &corners, window.spacing());
         let [[a, b], [c, d]] = corners.map(|row| row.map(R::abs));
-        let corners = if D > 1 { (a + d) + (b + c) } else { a + b };
+        let corners = if D > 1 { ((a + d) + (b + c)) * R::of(0.5) } else { a + b };
         corners + rate.abs() * smallest
     }
 
