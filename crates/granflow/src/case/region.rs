@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use geo::{BoundingRect, Intersects, Point, Polygon};
+use geo::{BoundingRect, Distance, Euclidean, Intersects, Point, Polygon};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -122,6 +122,27 @@ impl Area {
         }
     }
 
+    /// Distance of a place from the region's rim, positive within.
+    pub(super) fn depth(&self, [x, y]: [f64; 2]) -> f64 {
+        match self {
+            Self::Box(xs, ys) => {
+                let [across, along] = [(xs, x), (ys, y)].map(|([low, high], at)| (at - low).min(high - at));
+                let within = across.min(along);
+                if within >= 0.0 { within } else { -across.min(0.0).hypot(along.min(0.0)) }
+            }
+            Self::Disc(disc) => disc.radius - disc.centre.distance(x, y),
+            Self::Polygons(polygons) => {
+                let place = Point::new(x, y);
+                let depth = |polygon: &Polygon| {
+                    let rings = std::iter::once(polygon.exterior()).chain(polygon.interiors());
+                    let away = rings.map(|ring| Euclidean.distance(&place, ring)).fold(f64::INFINITY, f64::min);
+                    if polygon.intersects(&place) { away } else { -away }
+                };
+                polygons.iter().map(depth).fold(f64::NEG_INFINITY, f64::max)
+            }
+        }
+    }
+
     /// The ends [low, high] of the region along x and y.
     pub(super) fn bounds(&self) -> [[f64; 2]; 2] {
         match self {
@@ -163,6 +184,9 @@ mod tests {
         assert!(area.holds([1e-12, 0.5], 1e-9), "rounding does not push a place off an edge");
         let strip = Region::Box(vec![0.0, 1.0]).area(&plane(), Path::new("")).unwrap();
         assert!(strip.holds([0.5, 1e6], 0.0));
+        assert_eq!([[0.25, 9.0], [-3.0, 0.0]].map(|place| strip.depth(place)), [0.25, -3.0]);
+        let square = Region::Box(vec![0.0, 1.0, 0.0, 1.0]).area(&plane(), Path::new("")).unwrap();
+        assert_eq!([[0.5, 0.125], [4.0, 5.0]].map(|place| square.depth(place)), [0.125, -5.0]);
     }
 
     #[test]
@@ -173,5 +197,6 @@ mod tests {
         let area = Region::File("ring.geojson".into()).area(&plane(), folder.path()).unwrap();
         assert!(area.holds([0.5, 2.0], 0.0) && !area.holds([2.0, 2.0], 0.0) && !area.holds([5.0, 2.0], 0.0));
         assert_eq!(area.bounds(), [[0.0, 4.0]; 2]);
+        assert_eq!([[0.5, 2.0], [2.0, 2.0], [7.0, 8.0]].map(|place| area.depth(place)), [0.5, -1.0, -5.0]);
     }
 }
