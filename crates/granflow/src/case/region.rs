@@ -135,7 +135,8 @@ impl Area {
                 let place = Point::new(x, y);
                 let depth = |polygon: &Polygon| {
                     let rings = std::iter::once(polygon.exterior()).chain(polygon.interiors());
-                    let away = rings.map(|ring| Euclidean.distance(&place, ring)).fold(f64::INFINITY, f64::min);
+                    let away =
+                        rings.map(|ring| Euclidean.distance(&place, ring)).fold(f64::INFINITY, f64::min);
                     if polygon.intersects(&place) { away } else { -away }
                 };
                 polygons.iter().map(depth).fold(f64::NEG_INFINITY, f64::max)

@@ -1,4 +1,4 @@
-//! A quantity along a line at four instants: the start, two between, the end.
+//! A quantity along a line at four instants: the start, two on the way, the end.
 
 use super::drawing::Drawing;
 use super::story::Story;
@@ -25,6 +25,24 @@ pub(super) struct Line<'a> {
     pub ends: Option<[f64; 2]>,
 }
 
+/// The first instant, those at which a third and two thirds of all change has happened, and the last.
+fn instants(series: &[Vec<f64>]) -> Vec<usize> {
+    let last = series.len().saturating_sub(1);
+    let change = |pair: &[Vec<f64>]| -> f64 {
+        let moved = pair[0].iter().zip(&pair[1]).map(|(a, b)| (a - b).abs());
+        moved.filter(|moved| moved.is_finite()).sum()
+    };
+    let mut changed = vec![0.0];
+    for pair in series.windows(2) {
+        changed.push(changed[changed.len() - 1] + change(pair));
+    }
+    let after = |share: f64| changed.partition_point(|c| *c < share * changed[last]);
+    let mut shown = vec![0, after(1.0 / 3.0), after(2.0 / 3.0), last];
+    shown.dedup();
+    shown.retain(|&k| k < series.len());
+    shown
+}
+
 /// The drawing of a quantity with this label.
 pub(super) fn drawing<'a>(
     story: &'a Story,
@@ -34,10 +52,7 @@ pub(super) fn drawing<'a>(
 ) -> Drawing<'a> {
     Drawing::new(name, caption, move || {
         let Line { x, series, .. } = &line;
-        let last = series.len().saturating_sub(1);
-        let mut shown = vec![0, last / 8, last / 3, last];
-        shown.dedup();
-        shown.retain(|&k| k < series.len());
+        let shown = instants(series);
         let names: Vec<String> = shown.iter().map(|&k| format!("t = {}", short(story.times[k]))).collect();
         let style = |place: usize| match place {
             0 => (Style::Dashed, Some([110, 110, 110])),
@@ -87,4 +102,19 @@ pub(super) fn drawing<'a>(
         }
         .draw()
     })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::instants;
+
+    #[test]
+    fn instants_follow_the_change_not_the_clock() {
+        let heights = [0.0, 0.4, 0.7, 0.9, 1.0, 1.0, 1.0, 1.0];
+        let series: Vec<Vec<f64>> = heights.iter().map(|h| vec![f64::NAN, *h]).collect();
+        assert_eq!(instants(&series), [0, 1, 2, 7]);
+        assert_eq!(instants(&series[4..]), [0, 3]);
+        assert_eq!(instants(&series[..1]), [0]);
+        assert_eq!(instants(&[]), [0; 0]);
+    }
 }
