@@ -1,10 +1,10 @@
 //! `granflow check`: what a case would compute, and how large it is.
 
 use granflow::case::{Axis, Case, Frames, Grid, Model, SchemeName, Side, Slope, Stepping, Until};
+use granflow::hadeler_kuttler::scheme::HadelerKuttler;
 use granflow::savage_hutter::Flow;
 use granflow::savage_hutter::ground::Bed;
 use granflow::scheme::Scheme;
-use granflow::hadeler_kuttler::scheme::HadelerKuttler;
 use granflow::setup::{Sand, Scene, Visit};
 use granflow::simulation::Simulation;
 use granflow::terrain::Terrain;

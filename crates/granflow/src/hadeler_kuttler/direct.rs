@@ -5,6 +5,10 @@
 //! by fast marching; the rolling layer follows by transport down the surface. Both in the discrete form of the
 //! first-order scheme, so that where the source covers the table they are its fixed point, to rounding.
 //!
+//! On a slanted or round table the open edges are stairs, and their corners gather the sand that falls: v does not converge
+//! in L1 (on the disc 20 % off from 20 to 160 cells across). With the true distance to the edge as height b of the nodes on the edge, where u = 0,
+//! the stairs vanish from the surface (2 % off at 40 cells across, 1 % at 160).
+//!
 //! A source on a part of the table fixes u only where its sand rolls. Elsewhere the equilibrium is not unique:
 //! max over the places y where sand rolls of (d(y) - |x - y|)+ <= u <= d(x), and what a run comes to depends on how it began.
 
@@ -69,28 +73,40 @@ pub enum Unsteady<const D: usize> {
 /// would take as many times longer to build the pile up.
 const CARRIES: f64 = 1e-6;
 
-/// The equilibrium for a `source` f (cells, x fastest) on a table with cells of `size` and height `bed` (nodes).
+/// The equilibrium for a `source` f (cells, x fastest) on a table with cells of `size` and height `bed` (nodes), the source
+/// split by [`rays`].
 pub fn equilibrium<const D: usize>(
     table: &Table<D>,
     size: [f64; D],
     bed: &[f64],
     source: &[f64],
 ) -> Result<Equilibrium<D>, Unsteady<D>> {
-    check(table, size, bed, source)?;
+    let split = rays(table, size, &surface(table, size, bed));
+    let poured: Vec<[f64; D]> = split.iter().zip(source).map(|(shares, f)| shares.map(|c| f * c)).collect();
+    equilibrium_along(table, size, bed, &poured)
+}
+
+/// The equilibrium for a source that is split along the axes already (cells, x fastest), as [`super::Ground::source`] is.
+pub fn equilibrium_along<const D: usize>(
+    table: &Table<D>,
+    size: [f64; D],
+    bed: &[f64],
+    source: &[[f64; D]],
+) -> Result<Equilibrium<D>, Unsteady<D>> {
+    let fed = |place: usize| source[table.cell(place)].iter().sum::<f64>() > 0.0;
+    check(table, size, bed, fed)?;
     let highest = surface(table, size, bed);
     let reached: Vec<f64> =
         highest.iter().zip(bed).map(|(s, b)| if s.is_finite() { *s } else { *b }).collect();
-    let split = rays(table, size, &highest);
     let mut poured = vec![[0.0; D]; table.size()];
     for place in table.places() {
-        let number = table.cell(place);
-        poured[place] = split[number].map(|share| source[number] * share);
+        poured[place] = source[table.cell(place)];
     }
     let slope = Slope { table, size, surface: &reached, source: &poured };
     let rolling = slope.carry()?;
 
     let fastest = rolling.v.iter().copied().fold(0.0, f64::max);
-    let carries = |place: usize| rolling.v[place] > CARRIES * fastest || source[table.cell(place)] > 0.0;
+    let carries = |place: usize| rolling.v[place] > CARRIES * fastest || fed(place);
     let mut determined = vec![false; table.size()];
     for place in table.places().filter(|place| carries(*place)) {
         for node in table.corners(place) {
@@ -127,10 +143,10 @@ fn check<const D: usize>(
     table: &Table<D>,
     size: [f64; D],
     bed: &[f64],
-    source: &[f64],
+    fed: impl Fn(usize) -> bool,
 ) -> Result<(), Unsteady<D>> {
     for piece in table.pieces().iter().filter(|piece| piece.open_edges == 0) {
-        if let Some(&cell) = piece.cells.iter().find(|c| source[table.cell(table.place(**c))] > 0.0) {
+        if let Some(&cell) = piece.cells.iter().find(|cell| fed(table.place(**cell))) {
             return Err(Unsteady::Enclosed { cell });
         }
     }
@@ -147,34 +163,40 @@ pub fn surface<const D: usize>(table: &Table<D>, size: [f64; D], bed: &[f64]) ->
 /// Shares cos^2(theta), sin^2(theta) of the source along the axes (eq. 47), theta the direction of the transport ray, in
 /// the cells, x fastest.
 ///
-/// The ray is the upwind gradient of the `surface` at the cell's nodes, squares being averaged. SPLIT_MEASURED
+/// tan(theta) is the ratio of the mean upwind slopes of the `surface` at the cell's nodes, without their sign.
+/// On the open square with f = 1/2 and 20, 40, 80 cells v then differs in L1 from the exact one by 5.4e-3, 1.5e-3, 3.8e-4, against
+/// 4.4e-3, 1.2e-3, 3.1e-4 by the nearest side (eqs. 48, 49), which only a square has, and 4.6e-3, 1.3e-3, 3.3e-4 by the signed
+/// slopes of the cell, which cancel on a ridge and send its sand along it instead of across.
 pub fn rays<const D: usize>(table: &Table<D>, size: [f64; D], surface: &[f64]) -> Vec<[f64; D]> {
     let mut shares = vec![[1.0 / D as f64; D]; table.cells().iter().product()];
-    let squares: Vec<[f64; D]> = (0..table.size())
+    let falls: Vec<[f64; D]> = (0..table.size())
         .map(|node| {
-            if table.pinned(node) || !surface[node].is_finite() {
-                return [0.0; D];
-            }
-            upwind(table, size, surface, node).map(|slope| slope * slope)
+            let known = surface[node].is_finite() && !table.pinned(node);
+            if known { upwind(table, size, surface, node) } else { [0.0; D] }
         })
         .collect();
     for place in table.places() {
-        let sum: [f64; D] = std::array::from_fn(|axis| {
-            let corner = |number: usize| squares[place + table.span(number)][axis];
-            if D == 1 { corner(0) + corner(1) } else { (corner(0) + corner(3)) + (corner(1) + corner(2)) }
+        let squares: [f64; D] = std::array::from_fn(|axis| {
+            let corner = |number: usize| falls[place + table.span(number)][axis];
+            let sum = if D == 1 {
+                corner(0) + corner(1)
+            } else {
+                (corner(0) + corner(3)) + (corner(1) + corner(2))
+            };
+            sum * sum
         });
-        let whole: f64 = sum.iter().sum();
+        let whole: f64 = squares.iter().sum();
         if whole > 0.0 {
-            shares[table.cell(place)] = sum.map(|part| part / whole);
+            shares[table.cell(place)] = squares.map(|part| part / whole);
         }
     }
     shares
 }
 
-/// The steepest rise of a height over the nodes of a table, and where.
+/// The steepest rise of a height to a node where u is not given, and where.
 pub fn steepest<const D: usize>(table: &Table<D>, size: [f64; D], height: &[f64]) -> ([usize; D], f64) {
     let mut most = (0, 0.0);
-    for node in 0..table.size() {
+    for node in (0..table.size()).filter(|node| !table.pinned(*node)) {
         let slope = table.around(node).map(|(cell, corner)| {
             let fall = falls(table, size, height, cell, corner);
             fall.iter().map(|f| f * f).sum::<f64>().sqrt()

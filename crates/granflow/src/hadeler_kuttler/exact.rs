@@ -49,3 +49,52 @@ pub fn disc(radius: f64, f: f64, r: f64) -> Pile<f64> {
 pub fn funnel(radius: f64, hole: f64, f: f64, r: f64) -> Pile<f64> {
     Pile { u: r - hole, v: f * (radius * radius - r * r) / (2.0 * r) }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::{disc, funnel, half_open_line, open_line, rectangle};
+
+    const F: f64 = 0.7;
+
+    /// |grad u| - 1 and -div(v grad u) - f at a smooth point, by central differences.
+    fn residual(pile: impl Fn(f64, f64) -> super::Pile<f64>, x: f64, y: f64) -> [f64; 2] {
+        let e = 1e-4;
+        let u = |x, y| pile(x, y).u;
+        let grad = |x, y| [(u(x + e, y) - u(x - e, y)) / (2.0 * e), (u(x, y + e) - u(x, y - e)) / (2.0 * e)];
+        let flow = |x, y, k: usize| pile(x, y).v * grad(x, y)[k];
+        let div = (flow(x + e, y, 0) - flow(x - e, y, 0) + flow(x, y + e, 1) - flow(x, y - e, 1)) / (2.0 * e);
+        let [a, b] = grad(x, y);
+        [a.hypot(b) - 1.0, -div - F]
+    }
+
+    #[test]
+    fn they_solve_the_equations() {
+        let open =
+            |open: [[bool; 2]; 2]| move |x: f64, y: f64| rectangle([1.0, 0.8], open, F, [x, y]).unwrap();
+        let (yes, no) = (true, false);
+        for sides in [[[yes; 2]; 2], [[yes, no], [yes, yes]], [[yes, no], [no, yes]], [[no, yes], [no, no]]] {
+            for [x, y] in [[0.1, 0.3], [0.3, 0.12], [0.9, 0.5], [0.62, 0.71]] {
+                let left = residual(open(sides), x, y);
+                assert!(left.iter().all(|r| r.abs() < 1e-6), "{sides:?} {x} {y}: {left:?}");
+            }
+        }
+        let round = |x: f64, y: f64| disc(1.0, F, x.hypot(y));
+        let hole = |x: f64, y: f64| funnel(1.0, 0.2, F, x.hypot(y));
+        for [x, y] in [[0.3, 0.4], [-0.6, 0.2], [0.1, -0.7]] {
+            assert!(residual(round, x, y).iter().all(|r| r.abs() < 1e-6));
+            assert!(residual(hole, x, y).iter().all(|r| r.abs() < 1e-6));
+        }
+    }
+
+    #[test]
+    fn a_table_with_two_walls_is_a_line() {
+        let line = |x: f64| open_line(2.0, x, |x| F * x);
+        let half = |x: f64| half_open_line(2.0, x, |x| F * x);
+        for x in [0.1, 0.9, 1.3, 1.8] {
+            let strip = |right| rectangle([2.0, 0.3], [[true, right], [false; 2]], F, [x, 0.1]).unwrap();
+            assert!((strip(true).v - line(x).v).abs() < 1e-15 && strip(true).u == line(x).u);
+            assert!((strip(false).v - half(x).v).abs() < 1e-15 && strip(false).u == half(x).u);
+        }
+        assert!(rectangle([1.0; 2], [[false; 2]; 2], F, [0.5; 2]).is_none());
+    }
+}

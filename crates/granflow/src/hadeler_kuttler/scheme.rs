@@ -161,7 +161,8 @@ impl HadelerKuttler {
     }
 
     /// E of a cell (eq. 37): what the first-order scheme would change in it and at its corners,
-    /// sum of |G| + h |rate of v|, h the smallest cell size.
+    /// sum of |G| + h |v_t|, h the smallest cell size; in two dimensions half the sum, which is the line's where nothing
+    /// varies across.
     #[inline(always)]
     fn residual<const D: usize, R: Real>(
         &self,
@@ -187,7 +188,7 @@ impl HadelerKuttler {
         let ground = window.at([0; D]).ground;
         let rate = rate_of_v(&ground, &faces, &corners, window.spacing());
         let [[a, b], [c, d]] = corners.map(|row| row.map(R::abs));
-        let corners = if D > 1 { (a + d) + (b + c) } else { a + b };
+        let corners = if D > 1 { ((a + d) + (b + c)) * R::of(0.5) } else { a + b };
         corners + rate.abs() * smallest
     }
 
@@ -257,12 +258,17 @@ fn corner<const D: usize, R: Real>(around: [[&Edges<D, R>; 2]; 2]) -> R {
     for (y, row) in around.iter().enumerate() {
         for (x, cell) in row.iter().enumerate() {
             let mut square = squares[0][x];
-            let mut v = if x == 0 { cell.v[0].hi() } else { cell.v[0].lo() };
+            let towards = |axis: usize, k: usize| {
+                let across = cell.v[axis].across * R::of(0.5);
+                if k == 0 { across } else { -across }
+            };
+            // The axes are added first: they may be swapped without changing a bit.
+            let mut across = towards(0, x);
             if D > 1 {
                 square = square + squares[1][y];
-                let across = cell.v[D - 1].across * R::of(0.5);
-                v = if y == 0 { v + across } else { v - across };
+                across = across + towards(D - 1, y);
             }
+            let v = cell.v[0].mid + across;
             let loss = v * (square.sqrt() - one);
             most = R::select(cell.inside, most.max(loss), most);
         }

@@ -5,6 +5,9 @@
 //! scheme therefore has one column and one row more than the table, which hold nodes only, and places are numbered on
 //! that grid, x fastest.
 
+#[cfg(test)]
+mod tests;
+
 use super::Ground;
 use crate::grid::Grid;
 use crate::scheme::{Boundary, Side};
@@ -32,7 +35,7 @@ impl<const D: usize> Edge<D> {
 /// Cells of a table that hang together through their faces.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Piece<const D: usize> {
-    /// Its cells.
+    /// Its cells, the first one first, the others in no order.
     pub cells: Vec<[usize; D]>,
     /// Its open edges: with none, sand that is poured on it never leaves, and it has no steady state.
     pub open_edges: usize,
@@ -42,6 +45,7 @@ pub struct Piece<const D: usize> {
 #[derive(Clone, Debug, PartialEq)]
 pub struct Table<const D: usize> {
     cells: [usize; D],
+    steps: [usize; D],
     inside: Vec<bool>,
     hole: Vec<bool>,
     wall: Vec<[bool; D]>,
@@ -69,6 +73,7 @@ impl<const D: usize> Table<D> {
         let size = cells.iter().map(|n| n + 1).product();
         let mut table = Table {
             cells,
+            steps: std::array::from_fn(|axis| cells[..axis].iter().map(|n| n + 1).product()),
             inside: vec![false; size],
             hole: vec![false; size],
             wall: vec![[false; D]; size],
@@ -216,7 +221,6 @@ impl<const D: usize> Table<D> {
                     }
                 }
             }
-            cells.sort_by_key(|index| self.place(*index));
             pieces.push(Piece { cells, open_edges });
         }
         pieces
@@ -259,7 +263,7 @@ impl<const D: usize> Table<D> {
     }
     /// Distance of neighbours along `axis`.
     pub(super) fn step(&self, axis: usize) -> usize {
-        self.cells[..axis].iter().map(|n| n + 1).product()
+        self.steps[axis]
     }
     /// How many places there are.
     pub(super) fn size(&self) -> usize {

@@ -40,7 +40,9 @@ impl<const D: usize> Sand<D> {
         let table = Table::masked(
             cells,
             |index| plan.inside[number(index)],
-            |edge| walls.contains(&(edge.axis, std::array::from_fn(|k| if k < D { edge.index[k] } else { 0 }))),
+            |edge| {
+                walls.contains(&(edge.axis, std::array::from_fn(|k| if k < D { edge.index[k] } else { 0 })))
+            },
         );
         let size = std::array::from_fn(|k| axes[k].map_or(1.0, case::Axis::width));
         let origin = std::array::from_fn(|k| axes[k].map_or(0.0, |axis| axis.from));

@@ -54,6 +54,16 @@ struct Face {
     poured: f64,
 }
 
+/// The face between two cells, each poured on, rolling and empty.
+fn meet<const D: usize>(axis: usize, below: &[Edges<D, f64>; 3], above: &[Edges<D, f64>; 3]) -> Face {
+    let flux = |low: &Edges<D, f64>, high: &Edges<D, f64>| FIRST_ORDER.flux(axis, low, high);
+    Face {
+        below: flux(&below[1], &above[2]),
+        above: flux(&below[2], &above[1]),
+        poured: flux(&below[0], &above[0]),
+    }
+}
+
 /// What enters a cell is rounding below this share of the largest source.
 const ROUNDING: f64 = 1e-11;
 /// A cell is level if less than this share of its sand leaves it per time.
@@ -70,23 +80,33 @@ pub(super) struct Rolling<const D: usize> {
 }
 
 impl<const D: usize> Slope<'_, D> {
-    fn edges(&self, place: usize, v: f64, poured: bool) -> Edges<D, f64> {
-        FIRST_ORDER.reconstruct(&Even { slope: self, place, spacing: Spacing::new(self.size), v, poured })
+    fn edges(&self, place: usize) -> [Edges<D, f64>; 3] {
+        let spacing = Spacing::new(self.size);
+        [(0.0, true), (1.0, false), (0.0, false)]
+            .map(|(v, poured)| FIRST_ORDER.reconstruct(&Even { slope: self, place, spacing, v, poured }))
     }
 
-    fn face(&self, place: usize, axis: usize) -> Face {
-        let below = self.table.below(place, axis);
-        if !self.table.is_inside(below) && !self.table.is_inside(place) {
-            return Face::default();
+    /// The faces below each place.
+    fn faces(&self) -> Vec<[Face; D]> {
+        // The edges of the last row are at hand when those of the next come: one is kept for each column.
+        let mut row = vec![self.edges(0); self.table.step(D - 1)];
+        let columns = row.len();
+        let mut faces = vec![[Face::default(); D]; self.table.size()];
+        for (place, faces) in faces.iter_mut().enumerate() {
+            let here = self.edges(place);
+            for (axis, face) in faces.iter_mut().enumerate() {
+                let below = self.table.below(place, axis);
+                if self.table.is_inside(below)
+                    || (self.table.is_inside(place) && place >= self.table.step(axis))
+                {
+                    *face = meet(axis, &row[below % columns], &here);
+                } else if self.table.is_inside(place) {
+                    *face = meet(axis, &self.edges(below), &here);
+                }
+            }
+            row[place % columns] = here;
         }
-        let [poured, rolling, empty] = [(0.0, true), (1.0, false), (0.0, false)]
-            .map(|(v, poured)| [below, place].map(|cell| self.edges(cell, v, poured)));
-        let flux = |low: &Edges<D, f64>, high: &Edges<D, f64>| FIRST_ORDER.flux(axis, low, high);
-        Face {
-            below: flux(&rolling[0], &empty[1]),
-            above: flux(&empty[0], &rolling[1]),
-            poured: flux(&poured[0], &poured[1]),
-        }
+        faces
     }
 
     /// The share of its v that leaves a cell per time.
@@ -137,8 +157,7 @@ impl<const D: usize> Slope<'_, D> {
     /// Solve for v: what leaves a cell is what enters it and what is poured on it.
     pub(super) fn carry(&self) -> Result<Rolling<D>, Unsteady<D>> {
         let table = self.table;
-        let mut faces: Vec<[Face; D]> =
-            (0..table.size()).map(|place| std::array::from_fn(|axis| self.face(place, axis))).collect();
+        let mut faces = self.faces();
         let opened = self.open_crests(&mut faces);
         let mut waits = vec![0_u8; table.size()];
         for place in 0..table.size() {
@@ -170,7 +189,11 @@ impl<const D: usize> Slope<'_, D> {
                 return Ok(0.0);
             }
             let leaves = self.leaves(&faces, place);
-            if leaves > LEVEL { Ok(enters / leaves) } else { Err(Unsteady::Trapped { cell: table.index(place) }) }
+            if leaves > LEVEL {
+                Ok(enters / leaves)
+            } else {
+                Err(Unsteady::Trapped { cell: table.index(place) })
+            }
         };
         let mut ready: Vec<usize> = table.places().filter(|place| waits[*place] == 0).collect();
         let mut done = vec![false; table.size()];
