@@ -2,31 +2,26 @@
 
 use super::SetupError;
 use crate::case::{self, Case, CaseError, Method, SchemeName, Sources, TablePlan};
-use crate::grid::Grid;
-use crate::hadeler_kuttler::direct::{self, Equilibrium, Unsteady};
+use crate::hadeler_kuttler::direct::{Equilibrium, Unsteady};
 use crate::hadeler_kuttler::scheme::{FIRST_ORDER, HadelerKuttler, SECOND_ORDER, Slopes};
+use crate::hadeler_kuttler::site::Site;
 use crate::hadeler_kuttler::table::Table;
-use crate::hadeler_kuttler::{Ground, Pile};
 use crate::results::{self, Plane};
 use crate::scheme::Side;
 use crate::simulation::{Simulation, StepSize};
-use crate::time::{EULER, SSP_RK2};
+use crate::time::EULER;
 
 /// A table with what is poured on it.
 #[derive(Debug)]
 pub struct Sand<const D: usize> {
     /// The case's table in plain numbers.
     pub plan: TablePlan,
-    /// The table.
-    pub table: Table<D>,
+    /// The table, laid out.
+    pub site: Site<D>,
     /// What is poured, and when.
     pub sources: Sources,
     /// The equilibrium, where the case asks for it without stepping.
     pub equilibrium: Option<Equilibrium<D>>,
-    origin: [f64; D],
-    size: [f64; D],
-    /// Shares of the source along the axes, in the cells.
-    shares: Vec<[f64; D]>,
 }
 
 impl<const D: usize> Sand<D> {
@@ -50,16 +45,9 @@ impl<const D: usize> Sand<D> {
             },
         );
         let size = std::array::from_fn(|k| axes[k].map_or(1.0, case::Axis::width));
-        let shares = direct::rays(&table, size, &direct::surface(&table, size, &plan.height));
-        let mut sand = Sand {
-            table,
-            sources,
-            equilibrium: None,
-            origin: std::array::from_fn(|k| axes[k].map_or(0.0, |axis| axis.from)),
-            size,
-            shares,
-            plan,
-        };
+        let origin = std::array::from_fn(|k| axes[k].map_or(0.0, |axis| axis.from));
+        let site = Site::new(table, origin, size, plan.height.clone());
+        let mut sand = Sand { site, sources, equilibrium: None, plan };
         if case.time.method == Some(Method::Direct) {
             sand.equilibrium = Some(sand.steady(case)?);
         }
@@ -73,7 +61,7 @@ impl<const D: usize> Sand<D> {
         let Some(source) = self.sources.lasting() else {
             return Err(fault("time.method", "a source changes for ever, so nothing is ever steady".into()));
         };
-        let found = direct::equilibrium(&self.table, self.size, &self.plan.height, &source);
+        let found = self.site.equilibrium(&source);
         found.map_err(|error: Unsteady<D>| fault("time.method", error.to_string()))
     }
 
@@ -104,31 +92,6 @@ impl<const D: usize> Sand<D> {
         )
     }
 
-    /// The grid of the scheme.
-    pub fn grid(&self) -> Grid<D> {
-        self.table.grid(self.origin, self.size)
-    }
-
-    /// The ground of a cell under rates of the cells of the table, x fastest.
-    fn ground(&self, index: [usize; D], rates: &[f64]) -> Ground<D, f64> {
-        let mut source = [0.0; D];
-        if let Some(cell) = self.cell(index) {
-            source = self.shares[cell].map(|share| share * rates[cell]);
-        }
-        self.table.ground(index, source, self.plan.height[self.node(index)])
-    }
-
-    /// Number of a cell among those of the case, of which the grid of the scheme has one more along each axis.
-    pub fn cell(&self, index: [usize; D]) -> Option<usize> {
-        let cells = self.table.cells();
-        let within = (0..D).all(|k| index[k] < cells[k]);
-        within.then(|| (0..D).rev().fold(0, |sum, k| sum * cells[k] + index[k]))
-    }
-    /// Number of a node.
-    pub fn node(&self, index: [usize; D]) -> usize {
-        (0..D).rev().fold(0, |sum, k| sum * (self.table.cells()[k] + 1) + index[k])
-    }
-
     /// The simulation that the case asks for; at its equilibrium if that is known.
     pub fn simulation(&self, case: &Case) -> Simulation<D, HadelerKuttler> {
         let scheme = match case.scheme.name {
@@ -142,13 +105,7 @@ impl<const D: usize> Sand<D> {
             None => (&self.plan.standing, &self.plan.rolling, 0.0),
         };
         let rates = self.rates(time);
-        let stages = if scheme.slopes == Slopes::None { EULER } else { SSP_RK2 };
-        let initial = |index| {
-            let v = self.cell(index).filter(|_| self.table.inside(index)).map_or(0.0, |cell| v[cell]);
-            Pile { u: u[self.node(index)], v }
-        };
-        let ground = |index| self.ground(index, &rates);
-        Simulation::new(scheme, self.grid(), stages, super::step_size(case), ground, initial)
+        self.site.simulation(scheme, super::step_size(case), &rates, (u, v))
     }
 
     /// Rates of the sources at a time, in the cells; at infinity those that last.
@@ -159,14 +116,14 @@ impl<const D: usize> Sand<D> {
     /// Pour as the sources do at `time`.
     pub fn pour(&self, simulation: &mut Simulation<D, HadelerKuttler>, time: f64) {
         let rates = self.rates(time);
-        simulation.change_grounds(|index, _| self.ground(index, &rates));
+        simulation.change_grounds(|index, _| self.site.ground(index, &rates));
     }
 
     /// What one step of the first-order scheme would change at the equilibrium: max |u_t|, max |v_t|.
     pub fn residual(&self, simulation: &Simulation<D, HadelerKuttler>) -> [f64; 2] {
         let step = StepSize::Courant(0.45);
         let (ground, state) = (|index| simulation.ground(index), |index| simulation.state(index));
-        let mut step = Simulation::new(FIRST_ORDER, self.grid(), EULER, step, ground, state);
+        let mut step = Simulation::new(FIRST_ORDER, self.site.grid(), EULER, step, ground, state);
         let done = step.advance(f64::INFINITY);
         let [u, v, _] = step.drift();
         if done.is_ok() { [u, v] } else { [f64::NAN; 2] }

@@ -167,7 +167,7 @@ impl Runs {
     /// Runs every example by every scheme, on all cores.
     pub fn compute() -> Result<Self, Failure> {
         let schemes = SCHEMES.len();
-        super::parallel(EXAMPLES.len() * schemes, |k| {
+        super::super::parallel(EXAMPLES.len() * schemes, |k| {
             Computed::run(&EXAMPLES[k / schemes], SCHEMES[k % schemes])
         })
         .into_iter()
