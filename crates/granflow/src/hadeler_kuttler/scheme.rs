@@ -120,7 +120,7 @@ impl HadelerKuttler {
     }
 
     /// Limited differences of everything that varies (eqs. 16-18, 43), 0 beside the edge of the table.
-    #[inline(always)]
+    #[inline(never)]
     fn linear<const D: usize, R: Real>(
         window: &impl Window<D, R, Pile<R>, Ground<D, R>>,
         here: &Edges<D, R>,
@@ -193,7 +193,7 @@ impl HadelerKuttler {
     }
 
     /// Theta(E) = E^2/(E^2 + h^m) (eq. 36).
-    #[inline(always)]
+    #[inline(never)]
     fn theta<const D: usize, R: Real>(
         &self,
         exponent: f64,
