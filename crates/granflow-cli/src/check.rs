@@ -1,10 +1,10 @@
 //! `granflow check`: what a case would compute, and how large it is.
 
 use granflow::case::{Axis, Case, Frames, Grid, Model, SchemeName, Side, Slope, Stepping, Until};
+use granflow::hadeler_kuttler::scheme::HadelerKuttler;
 use granflow::savage_hutter::Flow;
 use granflow::savage_hutter::ground::Bed;
 use granflow::scheme::Scheme;
-use granflow::hadeler_kuttler::scheme::HadelerKuttler;
 use granflow::setup::{Sand, Scene, Visit};
 use granflow::simulation::Simulation;
 use granflow::terrain::Terrain;
@@ -85,8 +85,8 @@ fn avalanche(case: &Case) -> Result<Vec<(&'static str, String)>, Failure> {
             lines.extend(grid_lines(case, grid)?);
             cells[0] * cells[1]
         }
-        (Scene::Line(sand), _) => sand.plan.inside.len(),
-        (Scene::Table(sand), _) => sand.plan.inside.len(),
+        (Scene::Line(sand), _) => sand.plan.rolling.len(),
+        (Scene::Table(sand), _) => sand.plan.rolling.len(),
         (Scene::Chute { .. }, None) => 0,
     };
     let start = scene.simulate(case, Look);

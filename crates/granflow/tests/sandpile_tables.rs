@@ -124,21 +124,41 @@ fn search() {
     for (n, f, lambda) in [(50, 0.5, 0.45), (100, 0.5, 0.45), (200, 0.5, 0.45), (50, 1.0, 0.45)] {
         println!("n {n} f {f} lambda {lambda}");
         let mut list = vec![("FO".to_string(), FIRST_ORDER)];
-        for m in [2.0, 2.25, 2.5, 2.6, 2.75, 3.0] { list.push((format!("m={m}"), HadelerKuttler { slopes: Slopes::Adaptive { exponent: m } })); }
+        for m in [2.0, 2.25, 2.5, 2.6, 2.75, 3.0] {
+            list.push((format!("m={m}"), HadelerKuttler { slopes: Slopes::Adaptive { exponent: m } }));
+        }
         for (name, scheme) in list {
             let mut run = line(n, scheme, f, lambda, zero, zero);
             let mut first_u = [0; 2];
             let mut last_v = [0; 4];
             let (mut least, mut rise) = (f64::INFINITY, 1.0_f64);
             for k in 1..=(80.0 / lambda * n as f64 / (f * 2.0)) as usize {
-                if run.advance(f64::INFINITY).is_err() { println!("too long"); break; }
+                if run.advance(f64::INFINITY).is_err() {
+                    println!("too long");
+                    break;
+                }
                 let e = errors(&run, ub, |x| vb(x) * f * 2.0);
-                for (first, bound) in first_u.iter_mut().zip([1e-3, 1e-4]) { if e[0] < bound && *first == 0 { *first = k; } }
-                for (last, bound) in last_v.iter_mut().zip([1e-3, 1e-4, 1e-5, 1e-6]) { if e[1] >= bound * f * 2.0 { *last = k; } }
-                if e[1] < 1e-3 { least = least.min(e[1]); rise = rise.max(e[1] / least); }
-                if e[1] < 1e-7 { break; }
+                for (first, bound) in first_u.iter_mut().zip([1e-3, 1e-4]) {
+                    if e[0] < bound && *first == 0 {
+                        *first = k;
+                    }
+                }
+                for (last, bound) in last_v.iter_mut().zip([1e-3, 1e-4, 1e-5, 1e-6]) {
+                    if e[1] >= bound * f * 2.0 {
+                        *last = k;
+                    }
+                }
+                if e[1] < 1e-3 {
+                    least = least.min(e[1]);
+                    rise = rise.max(e[1] / least);
+                }
+                if e[1] < 1e-7 {
+                    break;
+                }
             }
-            println!("{name}: u<1e-3,4 at {first_u:?}, v<1e-3,4,5,6 for good after {last_v:?}, v rises by {rise:.2}");
+            println!(
+                "{name}: u<1e-3,4 at {first_u:?}, v<1e-3,4,5,6 for good after {last_v:?}, v rises by {rise:.2}"
+            );
         }
     }
 }

@@ -1,11 +1,11 @@
 //! One example run by one scheme, in memory, and what is measured on it.
 
 use granflow::case::Case;
+use granflow::hadeler_kuttler::scheme::HadelerKuttler;
 use granflow::savage_hutter::Flow;
 use granflow::savage_hutter::exact::Riemann;
 use granflow::savage_hutter::ground::Bed;
 use granflow::scheme::Scheme;
-use granflow::hadeler_kuttler::scheme::HadelerKuttler;
 use granflow::setup::{Sand, Scene, Visit};
 use granflow::simulation::Simulation;
 

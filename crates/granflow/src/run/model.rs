@@ -90,7 +90,10 @@ impl<const D: usize> Model<D> for HadelerKuttler {
         (summary.max_speed_final, summary.max_speed) = (f64::NAN, f64::NAN);
         summary.add("rolling_layer_max_final", v_end);
         summary.add("rolling_layer_max", v_most);
-        summary.add("standing_layer_max", simulation.collect(|cell| cell.state.u).into_iter().fold(0.0, f64::max));
+        summary.add(
+            "standing_layer_max",
+            simulation.collect(|cell| cell.state.u).into_iter().fold(0.0, f64::max),
+        );
         summary.add("rolling_cells_final", simulation.totals().moving as f64);
         summary.add("source_rate_final", simulation.supply());
         let direct = sand.filter(|sand| sand.equilibrium.is_some());
@@ -102,7 +105,10 @@ impl<const D: usize> Model<D> for HadelerKuttler {
         summary.add("rolling_layer_rate", v);
         if let Some(outflow) = direct.and_then(Sand::outflow) {
             let names = ["left", "right", "bottom", "top", "hole"];
-            names.iter().zip(outflow).for_each(|(name, rate)| summary.add(&format!("outflow_rate_{name}"), rate));
+            names
+                .iter()
+                .zip(outflow)
+                .for_each(|(name, rate)| summary.add(&format!("outflow_rate_{name}"), rate));
         }
     }
     fn pour(simulation: &mut Simulation<D, Self>, sand: &Sand<D>, time: f64) {
@@ -113,7 +119,9 @@ impl<const D: usize> Model<D> for HadelerKuttler {
 /// A value of every cell of a table, of which the grid of the scheme has one more along each axis.
 fn in_cells<const D: usize>(
     simulation: &Simulation<D, HadelerKuttler>,
-    value: impl Fn(&crate::scheme::Cell<crate::hadeler_kuttler::Pile<f64>, crate::hadeler_kuttler::Ground<D, f64>>) -> f64,
+    value: impl Fn(
+        &crate::scheme::Cell<crate::hadeler_kuttler::Pile<f64>, crate::hadeler_kuttler::Ground<D, f64>>,
+    ) -> f64,
 ) -> Vec<f64> {
     let grid = simulation.grid();
     let within = |index: &[usize; D]| (0..D).all(|k| index[k] + 1 < grid.cells[k]);

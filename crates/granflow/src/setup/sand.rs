@@ -5,7 +5,6 @@ use crate::case::{self, Case, CaseError, Method, SchemeName, Sources, TablePlan}
 use crate::grid::Grid;
 use crate::hadeler_kuttler::direct::{self, Equilibrium, Unsteady};
 use crate::hadeler_kuttler::scheme::{FIRST_ORDER, HadelerKuttler, SECOND_ORDER, Slopes};
-use crate::hadeler_kuttler::table::Table;
 use crate::hadeler_kuttler::{Ground, Pile};
 use crate::results::{self, Plane};
 use crate::scheme::Side;
@@ -16,9 +15,7 @@ use crate::time::{EULER, SSP_RK2};
 #[derive(Debug)]
 pub struct Sand<const D: usize> {
     /// The case's table in plain numbers.
-    pub plan: TablePlan,
-    /// The table.
-    pub table: Table<D>,
+    pub plan: TablePlan<D>,
     /// What is poured, and when.
     pub sources: Sources,
     /// The equilibrium, where the case asks for it without stepping.
@@ -36,21 +33,11 @@ impl<const D: usize> Sand<D> {
     /// [`CaseError`] for a table or a source that cannot be used.
     pub(super) fn load(case: &Case, grid: &case::Grid) -> Result<Self, SetupError> {
         let plan = case.table()?;
-        let sources = case.sources()?;
+        let sources = case.sources(&plan)?;
         let axes = [Some(&grid.x), grid.y.as_ref()];
-        let cells: [usize; D] = std::array::from_fn(|k| grid.cells()[k]);
-        let walls: std::collections::HashSet<(usize, [usize; 2])> =
-            plan.edges.iter().filter(|edge| edge.wall).map(|edge| (edge.axis, edge.face)).collect();
-        let number = |index: [usize; D]| (0..D).rev().fold(0, |sum, k| sum * cells[k] + index[k]);
-        let table = Table::masked(
-            cells,
-            |index| plan.inside[number(index)],
-            |edge| walls.contains(&(edge.axis, std::array::from_fn(|k| if k < D { edge.index[k] } else { 0 }))),
-        );
         let size = std::array::from_fn(|k| axes[k].map_or(1.0, case::Axis::width));
-        let shares = direct::rays(&table, size, &direct::surface(&table, size, &plan.height));
+        let shares = direct::rays(&plan.table, size, &direct::surface(&plan.table, size, &plan.height));
         let mut sand = Sand {
-            table,
             sources,
             equilibrium: None,
             origin: std::array::from_fn(|k| axes[k].map_or(0.0, |axis| axis.from)),
@@ -71,8 +58,11 @@ impl<const D: usize> Sand<D> {
         let Some(source) = self.sources.lasting() else {
             return Err(fault("time.method", "a source changes for ever, so nothing is ever steady".into()));
         };
-        let found = direct::equilibrium(&self.table, self.size, &self.plan.height, &source);
-        found.map_err(|error: Unsteady<D>| fault("time.method", error.to_string()))
+        let found = direct::equilibrium(&self.plan.table, self.size, &self.plan.height, &source);
+        found.map_err(|error: Unsteady<D>| {
+            let steep = matches!(error, Unsteady::Steep { .. });
+            fault(if steep { "table.height" } else { "time.method" }, error.to_string())
+        })
     }
 
     /// Where its cells and nodes lie, for the files.
@@ -82,10 +72,10 @@ impl<const D: usize> Sand<D> {
             let mut counts = cells.counts();
             counts[axis] += 1;
             let mut walls = vec![false; counts[0] * counts[1]];
-            for edge in self.plan.edges.iter().filter(|edge| edge.wall && edge.axis == axis) {
-                walls[edge.face[1] * counts[0] + edge.face[0]] = true;
+            for (edge, _) in self.plan.table.edges().filter(|(edge, wall)| *wall && edge.axis == axis) {
+                walls[edge.index.iter().rev().fold(0, |row, k| row * counts[0] + k)] = true;
             }
-            if D > axis && walls.contains(&true) { walls } else { Vec::new() }
+            if walls.contains(&true) { walls } else { Vec::new() }
         };
         let flat = self.plan.height.iter().all(|height| *height == 0.0);
         Plane::table(
@@ -94,7 +84,7 @@ impl<const D: usize> Sand<D> {
             results::Table {
                 x_node: nodes.x.clone(),
                 y_node: nodes.y.clone().unwrap_or_default(),
-                inside: self.plan.inside.clone(),
+                inside: (0..self.plan.rolling.len()).map(|cell| self.plan.inside(cell)).collect(),
                 height: if flat { Vec::new() } else { self.plan.height.clone() },
                 wall_x: walls(0),
                 wall_y: if D > 1 { walls(1) } else { Vec::new() },
@@ -104,7 +94,7 @@ impl<const D: usize> Sand<D> {
 
     /// The grid of the scheme.
     pub fn grid(&self) -> Grid<D> {
-        self.table.grid(self.origin, self.size)
+        self.plan.table.grid(self.origin, self.size)
     }
 
     /// The ground of a cell under rates of the cells of the table, x fastest.
@@ -113,18 +103,14 @@ impl<const D: usize> Sand<D> {
         if let Some(cell) = self.cell(index) {
             source = self.shares[cell].map(|share| share * rates[cell]);
         }
-        self.table.ground(index, source, self.plan.height[self.node(index)])
+        self.plan.table.ground(index, source, self.plan.height[self.plan.table.place(index)])
     }
 
     /// Number of a cell among those of the case, of which the grid of the scheme has one more along each axis.
     pub fn cell(&self, index: [usize; D]) -> Option<usize> {
-        let cells = self.table.cells();
+        let cells = self.plan.table.cells();
         let within = (0..D).all(|k| index[k] < cells[k]);
-        within.then(|| (0..D).rev().fold(0, |sum, k| sum * cells[k] + index[k]))
-    }
-    /// Number of a node.
-    pub fn node(&self, index: [usize; D]) -> usize {
-        (0..D).rev().fold(0, |sum, k| sum * (self.table.cells()[k] + 1) + index[k])
+        within.then(|| self.plan.table.cell(self.plan.table.place(index)))
     }
 
     /// The simulation that the case asks for; at its equilibrium if that is known.
@@ -142,8 +128,8 @@ impl<const D: usize> Sand<D> {
         let rates = self.rates(time);
         let stages = if scheme.slopes == Slopes::None { EULER } else { SSP_RK2 };
         let initial = |index| {
-            let v = self.cell(index).filter(|_| self.table.inside(index)).map_or(0.0, |cell| v[cell]);
-            Pile { u: u[self.node(index)], v }
+            let v = self.cell(index).filter(|_| self.plan.table.inside(index)).map_or(0.0, |cell| v[cell]);
+            Pile { u: u[self.plan.table.place(index)], v }
         };
         let ground = |index| self.ground(index, &rates);
         Simulation::new(scheme, self.grid(), stages, super::step_size(case), ground, initial)

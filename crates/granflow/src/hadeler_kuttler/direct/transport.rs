@@ -170,7 +170,11 @@ impl<const D: usize> Slope<'_, D> {
                 return Ok(0.0);
             }
             let leaves = self.leaves(&faces, place);
-            if leaves > LEVEL { Ok(enters / leaves) } else { Err(Unsteady::Trapped { cell: table.index(place) }) }
+            if leaves > LEVEL {
+                Ok(enters / leaves)
+            } else {
+                Err(Unsteady::Trapped { cell: table.index(place) })
+            }
         };
         let mut ready: Vec<usize> = table.places().filter(|place| waits[*place] == 0).collect();
         let mut done = vec![false; table.size()];
