@@ -170,10 +170,10 @@ fn once_nothing_is_poured_the_pile_stands_still() {
     assert!(difference(&pile.layer("standing_layer", 0), &pile.layer("standing_layer", 1)) < 1e-8);
     assert!(pile.steepest() <= 1.0 + 1e-12, "{}", pile.steepest());
     let disc = (0..400).filter(|k| {
-        let at = |i: usize| (i as f64 + 0.5) / 20.0 - 0.3;
-        at(k % 20).hypot(at(k / 20)) <= 0.2
+        let at = |i: usize| (i as f64 + 0.5) / 20.0 - 0.5;
+        at(k % 20).hypot(at(k / 20)) <= 0.3
     });
-    let poured = 0.5 + 0.25 * disc.count() as f64 / 400.0 + 0.0625;
+    let poured = 0.5 + 0.25 * disc.count() as f64 / 400.0 + 0.01;
     assert!((pile.number("mass_in") - poured).abs() < 1e-13, "{poured}");
 }
 

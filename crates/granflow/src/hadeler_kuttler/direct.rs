@@ -147,7 +147,7 @@ pub fn surface<const D: usize>(table: &Table<D>, size: [f64; D], bed: &[f64]) ->
 /// Shares cos^2(theta), sin^2(theta) of the source along the axes (eq. 47), theta the direction of the transport ray, in
 /// the cells, x fastest.
 ///
-/// The ray is the upwind gradient of the `surface` at the cell's nodes, squares being averaged. SPLIT_MEASURED
+/// The ray is the upwind gradient of the `surface` at the cell's nodes, squares being averaged.
 pub fn rays<const D: usize>(table: &Table<D>, size: [f64; D], surface: &[f64]) -> Vec<[f64; D]> {
     let mut shares = vec![[1.0 / D as f64; D]; table.cells().iter().product()];
     let squares: Vec<[f64; D]> = (0..table.size())
