@@ -110,9 +110,15 @@ fn between_two_edges_the_roof_is_exact() {
 
 #[test]
 fn what_grows_in_time_is_what_is_computed_at_once() {
-    for (name, cells) in [("sandpile", 16), ("sandpile_disc", 16), ("sandpile_l", 16), ("sandpile_walls", 10)]
-    {
-        let grown = run(name, cells, &[]);
+    let (flat, slope) = ("table.height=0.0", "table.height.formula=0.5*hypot(x-0.5, y-0.5)");
+    let tables = [
+        ("sandpile", 16, flat),
+        ("sandpile", 16, slope),
+        ("sandpile_disc", 16, flat),
+        ("sandpile_l", 16, flat),
+    ];
+    for (name, cells, height) in tables.into_iter().chain([("sandpile_walls", 10, flat)]) {
+        let grown = run(name, cells, &[height]);
         assert!(grown.steady(), "{name}: {}", grown.summary["stop_reason"]);
         let folder = tempfile::tempdir().unwrap();
         let case = format!("cases/{name}.toml");
@@ -125,6 +131,8 @@ fn what_grows_in_time_is_what_is_computed_at_once() {
                 "--out",
                 "out",
                 "--quiet",
+                "--set",
+                height,
                 "--set",
                 &sets[0],
                 "--set",
@@ -219,7 +227,7 @@ fn compute(case: &Case, directory: &Path, resume: bool, stop: Option<u64>) -> gr
 
 #[test]
 fn an_interrupted_pile_goes_on_as_if_it_had_not_been() {
-    for (name, stops) in [("sandpile_switched", [37, 150, 151]), ("sandpile_moving", [1, 200, 333])] {
+    for (name, stops) in [("sandpile_switched", [37, 150, 151]), ("sandpile_moving", [1, 120, 250])] {
         let changes = ["scheme={name=\"first_order\"}", "grid.x.cells=16", "grid.y.cells=16", "time={end=4}"];
         let path = format!("{}/../../cases/{name}.toml", env!("CARGO_MANIFEST_DIR"));
         let case = Case::load_with(Path::new(&path), &changes.map(str::to_owned)).unwrap();
