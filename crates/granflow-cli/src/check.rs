@@ -85,8 +85,8 @@ fn avalanche(case: &Case) -> Result<Vec<(&'static str, String)>, Failure> {
             lines.extend(grid_lines(case, grid)?);
             cells[0] * cells[1]
         }
-        (Scene::Line(sand), _) => sand.plan.inside.len(),
-        (Scene::Table(sand), _) => sand.plan.inside.len(),
+        (Scene::Line(sand), _) => sand.plan.rolling.len(),
+        (Scene::Table(sand), _) => sand.plan.rolling.len(),
         (Scene::Chute { .. }, None) => 0,
     };
     let start = scene.simulate(case, Look);

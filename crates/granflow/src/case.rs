@@ -56,7 +56,7 @@ pub use grid::{Axis, AxisSides, Boundary, Grid, Points, Side, SidePair};
 pub use initial::{Cap, Centre, Cone, Initial, Parabola, Quantity, Shape, Steps};
 pub use material::{Cohesion, Coulomb, EarthPressure, Friction, Material, Samosat, Voellmy};
 pub use output::{FileKind, Frames, Output};
-pub use plan::{TableEdge, TablePlan};
+pub use plan::TablePlan;
 pub use region::{Disc, Region};
 pub use sand::{Rate, SandSource, Sources, Varying};
 pub use scheme::{Scheme, SchemeName, Stepping};

@@ -8,7 +8,15 @@ use crate::failure::Failure;
 /// The lines about a sandpile.
 pub(super) fn lines(case: &Case) -> Result<Vec<(&'static str, String)>, Failure> {
     case.check()?;
-    let (plan, sources) = (case.table()?, case.sources()?);
+    match case.grid.as_ref().and_then(|grid| grid.y.as_ref()) {
+        None => table_lines::<1>(case),
+        Some(_) => table_lines::<2>(case),
+    }
+}
+
+fn table_lines<const D: usize>(case: &Case) -> Result<Vec<(&'static str, String)>, Failure> {
+    let plan = case.table::<D>()?;
+    let sources = case.sources(&plan)?;
     let mut lines = describe(case);
     let axes: Vec<&Axis> =
         case.grid.iter().flat_map(|grid| [Some(&grid.x), grid.y.as_ref()]).flatten().collect();
@@ -16,7 +24,7 @@ pub(super) fn lines(case: &Case) -> Result<Vec<(&'static str, String)>, Failure>
         lines.push((if name == "x" { "grid" } else { "" }, axis_line(name, axis)));
     }
     let cell: f64 = axes.iter().map(|axis| axis.width()).product();
-    let count = plan.inside.iter().filter(|inside| **inside).count();
+    let count = plan.table.count();
     lines.push(("table", format!("{count} cells, {:.6} in all, {}", count as f64 * cell, edges(&plan))));
     let (low, high) = range(&plan.height);
     if (low, high) != (0.0, 0.0) {
@@ -35,15 +43,16 @@ pub(super) fn lines(case: &Case) -> Result<Vec<(&'static str, String)>, Failure>
     } else {
         // The paper's bound along each axis, dt max(1, max v)/h: slopes are at most 1.
         let rate = axes.iter().map(|axis| v.max(1.0) / axis.width()).sum();
-        lines.extend(effort(case, plan.inside.len(), rate));
+        lines.extend(effort(case, plan.rolling.len(), rate));
     }
     Ok(lines)
 }
 
 /// How many edges of each kind there are, open and walls.
-fn edges(plan: &TablePlan) -> String {
+fn edges<const D: usize>(plan: &TablePlan<D>) -> String {
     let kinds = [Edge::Left, Edge::Right, Edge::Bottom, Edge::Top, Edge::Hole];
-    let count = |kind, wall| plan.edges.iter().filter(|edge| edge.kind == kind && edge.wall == wall).count();
+    let all: Vec<(Edge, bool)> = plan.table.edges().map(|(edge, wall)| (Edge::of(&edge), wall)).collect();
+    let count = |kind, wall| all.iter().filter(|edge| **edge == (kind, wall)).count();
     let words = |wall: bool| {
         let of =
             |kind: Edge| (count(kind, wall) > 0).then(|| format!("{} {}", count(kind, wall), kind.as_str()));

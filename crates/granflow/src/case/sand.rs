@@ -159,11 +159,7 @@ impl Case {
     ///
     /// # Errors
     /// [`CaseError`] for a formula or a region that cannot be evaluated.
-    pub fn sources(&self) -> Result<Sources, CaseError> {
-        self.sources_on(&self.table()?)
-    }
-
-    pub(super) fn sources_on(&self, plan: &TablePlan) -> Result<Sources, CaseError> {
+    pub fn sources<const D: usize>(&self, plan: &TablePlan<D>) -> Result<Sources, CaseError> {
         let points = &plan.centres;
         let mut parts = Vec::new();
         for (index, source) in self.sources.iter().enumerate() {
@@ -179,7 +175,7 @@ impl Case {
             let area = area.map_err(|part| fault("on", part))?;
             let on = |place| area.as_ref().is_none_or(|area| area.holds(place, plan.slack));
             let meant: Vec<_> = points.iter().enumerate().filter(|(_, place)| on(*place)).collect();
-            let cells: Vec<_> = meant.iter().copied().filter(|(cell, _)| plan.inside[*cell]).collect();
+            let cells: Vec<_> = meant.iter().copied().filter(|(cell, _)| plan.inside(*cell)).collect();
             let lost = match &area {
                 Some(_) if !meant.is_empty() => 1.0 - cells.len() as f64 / meant.len() as f64,
                 _ => 0.0,
@@ -187,6 +183,6 @@ impl Case {
             let beyond = area.is_some_and(|area| plan.reaches_beyond(area.bounds()));
             parts.push(Part { span: source.span(), cells, rate, lost, beyond });
         }
-        Ok(Sources { cells: plan.inside.len(), parts })
+        Ok(Sources { cells: plan.rolling.len(), parts })
     }
 }

@@ -7,6 +7,8 @@ use serde::{Deserialize, Deserializer, Serialize};
 
 use super::initial::Quantity;
 use super::region::Region;
+use crate::hadeler_kuttler::table as library;
+use crate::scheme::Side;
 
 /// The table of the model hadeler_kuttler: the whole grid, unless `mask` and `cut` say otherwise; a cell belongs to it if
 /// its centre does.
@@ -49,15 +51,15 @@ pub enum Edge {
 }
 
 impl Edge {
-    /// The edge that faces along `axis` (0 for x), `up` or down, or is one of a hole.
+    /// The name of an edge of the library's table.
     #[must_use]
-    pub fn facing(axis: usize, up: bool, hole: bool) -> Self {
-        match (hole, axis, up) {
+    pub fn of<const D: usize>(edge: &library::Edge<D>) -> Self {
+        match (edge.hole, edge.axis, edge.faces) {
             (true, ..) => Self::Hole,
-            (false, 0, false) => Self::Left,
-            (false, 0, true) => Self::Right,
-            (false, _, false) => Self::Bottom,
-            (false, _, true) => Self::Top,
+            (false, 0, Side::Left) => Self::Left,
+            (false, 0, Side::Right) => Self::Right,
+            (false, _, Side::Left) => Self::Bottom,
+            (false, _, Side::Right) => Self::Top,
         }
     }
 

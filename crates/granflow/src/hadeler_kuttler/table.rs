@@ -249,16 +249,16 @@ impl<const D: usize> Table<D> {
     }
 
     /// Number of a cell, or of its node, on the grid of the scheme.
-    pub(super) fn place(&self, index: [usize; D]) -> usize {
+    pub(crate) fn place(&self, index: [usize; D]) -> usize {
         (0..D).map(|k| index[k] * self.step(k)).sum()
     }
     /// Number of a place's cell where only cells are counted, x fastest.
-    pub(super) fn cell(&self, place: usize) -> usize {
+    pub(crate) fn cell(&self, place: usize) -> usize {
         let index = self.index(place);
         (0..D).rev().fold(0, |number, k| number * self.cells[k] + index[k])
     }
     /// The index of a place.
-    pub(super) fn index(&self, place: usize) -> [usize; D] {
+    pub(crate) fn index(&self, place: usize) -> [usize; D] {
         std::array::from_fn(|k| place / self.step(k) % (self.cells[k] + 1))
     }
     /// Distance of neighbours along `axis`.
@@ -279,11 +279,11 @@ impl<const D: usize> Table<D> {
         place.wrapping_sub(self.step(axis))
     }
     /// The cells of the table.
-    pub(super) fn places(&self) -> impl Iterator<Item = usize> + '_ {
+    pub(crate) fn places(&self) -> impl Iterator<Item = usize> + '_ {
         (0..self.inside.len()).filter(|place| self.inside[*place])
     }
     /// From a node to the corner numbered `corner` of a cell that it is the lowest node of: bit k is the end along axis k.
-    pub(super) fn span(&self, corner: usize) -> usize {
+    pub(crate) fn span(&self, corner: usize) -> usize {
         (0..D).filter(|k| corner >> k & 1 == 1).map(|k| self.step(k)).sum()
     }
     /// The nodes of a cell.
@@ -297,7 +297,7 @@ impl<const D: usize> Table<D> {
             .filter(|(cell, _)| self.is_inside(*cell))
     }
     /// Does the node end an open edge?
-    pub(super) fn pinned(&self, node: usize) -> bool {
+    pub(crate) fn pinned(&self, node: usize) -> bool {
         self.weight[node] == 0.0 && self.around(node).next().is_some()
     }
 }

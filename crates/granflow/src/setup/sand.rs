@@ -5,7 +5,6 @@ use crate::case::{self, Case, CaseError, Method, SchemeName, Sources, TablePlan}
 use crate::hadeler_kuttler::direct::{Equilibrium, Unsteady};
 use crate::hadeler_kuttler::scheme::{FIRST_ORDER, HadelerKuttler, SECOND_ORDER, Slopes};
 use crate::hadeler_kuttler::site::Site;
-use crate::hadeler_kuttler::table::Table;
 use crate::results::{self, Plane};
 use crate::scheme::Side;
 use crate::simulation::{Simulation, StepSize};
@@ -15,7 +14,7 @@ use crate::time::EULER;
 #[derive(Debug)]
 pub struct Sand<const D: usize> {
     /// The case's table in plain numbers.
-    pub plan: TablePlan,
+    pub plan: TablePlan<D>,
     /// The table, laid out.
     pub site: Site<D>,
     /// What is poured, and when.
@@ -31,22 +30,11 @@ impl<const D: usize> Sand<D> {
     /// [`CaseError`] for a table or a source that cannot be used.
     pub(super) fn load(case: &Case, grid: &case::Grid) -> Result<Self, SetupError> {
         let plan = case.table()?;
-        let sources = case.sources()?;
+        let sources = case.sources(&plan)?;
         let axes = [Some(&grid.x), grid.y.as_ref()];
-        let cells: [usize; D] = std::array::from_fn(|k| grid.cells()[k]);
-        let walls: std::collections::HashSet<(usize, [usize; 2])> =
-            plan.edges.iter().filter(|edge| edge.wall).map(|edge| (edge.axis, edge.face)).collect();
-        let number = |index: [usize; D]| (0..D).rev().fold(0, |sum, k| sum * cells[k] + index[k]);
-        let table = Table::masked(
-            cells,
-            |index| plan.inside[number(index)],
-            |edge| {
-                walls.contains(&(edge.axis, std::array::from_fn(|k| if k < D { edge.index[k] } else { 0 })))
-            },
-        );
         let size = std::array::from_fn(|k| axes[k].map_or(1.0, case::Axis::width));
         let origin = std::array::from_fn(|k| axes[k].map_or(0.0, |axis| axis.from));
-        let site = Site::new(table, origin, size, plan.height.clone());
+        let site = Site::new(plan.table.clone(), origin, size, plan.height.clone());
         let mut sand = Sand { site, sources, equilibrium: None, plan };
         if case.time.method == Some(Method::Direct) {
             sand.equilibrium = Some(sand.steady(case)?);
@@ -62,7 +50,10 @@ impl<const D: usize> Sand<D> {
             return Err(fault("time.method", "a source changes for ever, so nothing is ever steady".into()));
         };
         let found = self.site.equilibrium(&source);
-        found.map_err(|error: Unsteady<D>| fault("time.method", error.to_string()))
+        found.map_err(|error: Unsteady<D>| {
+            let steep = matches!(error, Unsteady::Steep { .. });
+            fault(if steep { "table.height" } else { "time.method" }, error.to_string())
+        })
     }
 
     /// Where its cells and nodes lie, for the files.
@@ -72,10 +63,10 @@ impl<const D: usize> Sand<D> {
             let mut counts = cells.counts();
             counts[axis] += 1;
             let mut walls = vec![false; counts[0] * counts[1]];
-            for edge in self.plan.edges.iter().filter(|edge| edge.wall && edge.axis == axis) {
-                walls[edge.face[1] * counts[0] + edge.face[0]] = true;
+            for (edge, _) in self.plan.table.edges().filter(|(edge, wall)| *wall && edge.axis == axis) {
+                walls[edge.index.iter().rev().fold(0, |row, k| row * counts[0] + k)] = true;
             }
-            if D > axis && walls.contains(&true) { walls } else { Vec::new() }
+            if walls.contains(&true) { walls } else { Vec::new() }
         };
         let flat = self.plan.height.iter().all(|height| *height == 0.0);
         Plane::table(
@@ -84,7 +75,7 @@ impl<const D: usize> Sand<D> {
             results::Table {
                 x_node: nodes.x.clone(),
                 y_node: nodes.y.clone().unwrap_or_default(),
-                inside: self.plan.inside.clone(),
+                inside: (0..self.plan.rolling.len()).map(|cell| self.plan.inside(cell)).collect(),
                 height: if flat { Vec::new() } else { self.plan.height.clone() },
                 wall_x: walls(0),
                 wall_y: if D > 1 { walls(1) } else { Vec::new() },

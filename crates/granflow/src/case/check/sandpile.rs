@@ -4,6 +4,7 @@ use crate::case::fault::CaseError;
 use crate::case::plan::TablePlan;
 use crate::case::sand::{Part, Rate, SandSource, Sources};
 use crate::case::{Case, Quantity, Region, Until};
+use std::collections::HashSet;
 
 /// Instants of a moving source, besides its beginning, at which its rate is checked.
 const INSTANTS: u32 = 16;
@@ -14,8 +15,16 @@ impl Case {
         for (index, source) in self.sources.iter().enumerate() {
             self.check_span(&format!("source[{index}]"), source)?;
         }
-        let plan = self.table()?;
-        let sources = self.sources_on(&plan)?;
+        match self.grid.as_ref().and_then(|grid| grid.y.as_ref()) {
+            None => self.check_pouring::<1>(),
+            Some(_) => self.check_pouring::<2>(),
+        }
+    }
+
+    /// The table, and what is poured on it.
+    fn check_pouring<const D: usize>(&self) -> Result<(), CaseError> {
+        let plan = self.table::<D>()?;
+        let sources = self.sources(&plan)?;
         for (index, part) in sources.parts.iter().enumerate() {
             self.check_rate(&format!("source[{index}]"), part, &plan)?;
         }
@@ -71,7 +80,12 @@ impl Case {
     }
 
     /// The rate of a source on its cells: at its beginning, and some way on if it moves.
-    fn check_rate(&self, key: &str, part: &Part, plan: &TablePlan) -> Result<(), CaseError> {
+    fn check_rate<const D: usize>(
+        &self,
+        key: &str,
+        part: &Part,
+        plan: &TablePlan<D>,
+    ) -> Result<(), CaseError> {
         if part.cells.is_empty() {
             return Err(self.fault(
                 &format!("{key}.on"),
@@ -107,7 +121,6 @@ impl Case {
         if self.time.method.is_none() {
             return Ok(());
         }
-        let table = |table: &crate::case::Table| table.height.is_some();
         for (key, given) in [
             ("time.steps", self.time.steps.is_some()),
             ("time.end", self.time.end.is_some()),
@@ -116,7 +129,6 @@ impl Case {
             ("scheme.courant", self.scheme.courant.is_some()),
             ("scheme.theta_exponent", self.scheme.theta_exponent.is_some()),
             ("initial", self.initial.is_some()),
-            ("table.height", self.table.as_ref().is_some_and(table)),
         ] {
             if given {
                 let message = format!("`{key}` has no effect with time.method = \"direct\"");
@@ -144,11 +156,26 @@ impl Case {
 
     /// What is allowed but may surprise; nothing where the case is not in order.
     pub(super) fn sandpile_notes(&self) -> Vec<String> {
-        let Ok(plan) = self.table() else { return Vec::new() };
-        let Ok(sources) = self.sources_on(&plan) else { return Vec::new() };
+        let notes = match self.grid.as_ref().and_then(|grid| grid.y.as_ref()) {
+            None => self.pouring_notes::<1>(),
+            Some(_) => self.pouring_notes::<2>(),
+        };
+        notes.unwrap_or_default()
+    }
+
+    fn pouring_notes<const D: usize>(&self) -> Result<Vec<String>, CaseError> {
+        let plan = self.table::<D>()?;
+        let sources = self.sources(&plan)?;
         let mut notes = Vec::new();
-        if plan.pieces > 1 {
-            notes.push(format!("the table is in {} pieces, each with a pile of its own", plan.pieces));
+        let pieces = plan.table.pieces().len();
+        if pieces > 1 {
+            notes.push(format!("the table is in {pieces} pieces, each with a pile of its own"));
+        }
+        if plan.table.dropped() > 0 {
+            notes.push(format!(
+                "{} cells are taken off the table: it is one cell wide there between open edges, so that no sand can stand on them",
+                plan.table.dropped()
+            ));
         }
         for (index, part) in sources.parts.iter().enumerate() {
             if part.lost > 0.0 {
@@ -176,17 +203,18 @@ impl Case {
         if self.sources.is_empty() && plan.rolling.iter().all(|v| *v == 0.0) {
             notes.push("no [[source]] and no initial.rolling_layer: nothing will move".to_owned());
         }
-        notes
+        Ok(notes)
     }
 }
 
 /// The first source that pours for ever on a piece of the table without an open edge, and one of its cells there.
-fn swamped(plan: &TablePlan, sources: &Sources) -> Option<(usize, usize)> {
-    let walled = plan.walled_in();
+fn swamped<const D: usize>(plan: &TablePlan<D>, sources: &Sources) -> Option<(usize, usize)> {
+    let walled = plan.table.pieces().into_iter().filter(|piece| piece.open_edges == 0);
+    let walled: HashSet<[usize; D]> = walled.flat_map(|piece| piece.cells).collect();
     let lasting = sources.parts.iter().enumerate().filter(|(_, part)| part.span[1] == f64::INFINITY);
     lasting.into_iter().find_map(|(index, part)| {
         let pours = |(cell, place): &&(usize, [f64; 2])| {
-            plan.piece[*cell].is_some_and(|piece| walled[piece]) && part.written(*place, part.span[0]) > 0.0
+            walled.contains(&plan.index(*cell)) && part.written(*place, part.span[0]) > 0.0
         };
         part.cells.iter().find(pours).map(|(cell, _)| (index, *cell))
     })

@@ -10,22 +10,27 @@ const ROUNDING: f64 = 1e-9;
 
 impl Case {
     /// Evaluates the height of the table and the two layers.
-    pub(super) fn lay(&self, table: &Table, plan: &mut TablePlan) -> Result<(), CaseError> {
-        plan.height = self.evaluate(&plan.nodes, "table.height", table.height.as_ref())?;
+    pub(super) fn lay<const D: usize>(
+        &self,
+        table: &Table,
+        plan: &mut TablePlan<D>,
+    ) -> Result<(), CaseError> {
+        if table.height.is_some() {
+            plan.height = self.evaluate(&plan.nodes, "table.height", table.height.as_ref())?;
+        }
         if let Some((slope, place)) = plan.steepest(&plan.height) {
             let message = format!("the table's slope is {slope} between {place}");
             let cure = "1 is the angle of repose: no slope of the table is above 1";
             return Err(self.fault("table.height", message, cure));
         }
         let initial = self.initial.clone().unwrap_or_default();
-        let (open, touched) = (plan.open_nodes(), plan.touched());
         let key = "initial.standing_layer";
         plan.standing = self.layer(&plan.nodes, key, initial.standing_layer.as_ref())?;
-        for ((u, open), touched) in plan.standing.iter_mut().zip(open).zip(touched) {
-            if open {
+        for (node, u) in plan.standing.iter_mut().enumerate() {
+            if plan.table.pinned(node) {
                 plan.clipped = plan.clipped.max(*u);
             }
-            if open || !touched {
+            if plan.table.weight(plan.table.index(node)) == 0.0 {
                 *u = 0.0;
             }
         }
@@ -36,44 +41,28 @@ impl Case {
                         lower it: min(..., the distance to the open edge)";
             return Err(self.fault(key, message, cure));
         }
-        plan.rolling = self.layer(&plan.centres, "initial.rolling_layer", initial.rolling_layer.as_ref())?;
-        for (v, inside) in plan.rolling.iter_mut().zip(&plan.inside) {
-            if !inside {
+        let mut rolling =
+            self.layer(&plan.centres, "initial.rolling_layer", initial.rolling_layer.as_ref())?;
+        for (cell, v) in rolling.iter_mut().enumerate() {
+            if !plan.inside(cell) {
                 *v = 0.0;
             }
         }
+        plan.rolling = rolling;
         Ok(())
     }
 }
 
-impl TablePlan {
-    /// Whether a cell of the table touches a node.
-    fn touched(&self) -> Vec<bool> {
-        let mut touched = vec![false; self.height.len()];
-        for (cell, _) in self.inside.iter().enumerate().filter(|(_, inside)| **inside) {
-            self.corners(cell).into_iter().flatten().for_each(|node| touched[node] = true);
-        }
-        touched
-    }
-
-    /// The nodes of a cell: lower left and right, upper left and right; only the first two in one dimension.
-    fn corners(&self, cell: usize) -> [Option<usize>; 4] {
-        let ([nx, _], [row, _]) = (self.centres.counts(), self.nodes.counts());
-        let low = cell / nx * row + cell % nx;
-        let high = self.nodes.y.is_some().then_some(low + row);
-        [Some(low), Some(low + 1), high, high.map(|high| high + 1)]
-    }
-
+impl<const D: usize> TablePlan<D> {
     /// The steepest slope above 1, if there is one, along the sides and the diagonals of the table's cells, with its place.
     ///
     /// Every pile whose |grad| is at most 1 passes, since a slope along a line is never above it.
     fn steepest(&self, surface: &[f64]) -> Option<(f64, String)> {
         let pairs = [[0, 1], [0, 2], [1, 3], [2, 3], [0, 3], [1, 2]];
         let mut most = (1.0, None);
-        for (cell, _) in self.inside.iter().enumerate().filter(|(_, inside)| **inside) {
-            let corners = self.corners(cell);
-            for [a, b] in pairs {
-                let (Some(a), Some(b)) = (corners[a], corners[b]) else { continue };
+        for cell in self.table.places() {
+            for [a, b] in pairs.into_iter().filter(|[_, b]| *b < 1 << D) {
+                let [a, b] = [a, b].map(|corner| cell + self.table.span(corner));
                 let ([ax, ay], [bx, by]) = (self.nodes.at(a), self.nodes.at(b));
                 let slope = (surface[a] - surface[b]).abs() / (ax - bx).hypot(ay - by);
                 // of slopes that are the same but for rounding the first is named

@@ -19,8 +19,31 @@ fn with(changes: &[&str]) -> Result<Case, CaseError> {
     Case::parse_with(PILE, "pile.toml", &overrides)
 }
 
-fn plan(changes: &[&str]) -> TablePlan {
+fn plan_in<const D: usize>(changes: &[&str]) -> TablePlan<D> {
     with(changes).unwrap().table().unwrap_or_else(|error| panic!("{changes:?}: {error}"))
+}
+
+fn plan(changes: &[&str]) -> TablePlan<2> {
+    plan_in(changes)
+}
+
+fn sources(case: &Case) -> Sources {
+    case.sources(&case.table::<2>().unwrap()).unwrap()
+}
+
+/// Numbers of its open edges: left, right, bottom, top, hole.
+fn open<const D: usize>(plan: &TablePlan<D>) -> [usize; 5] {
+    let edges: Vec<Edge> = plan.table.open_edges().iter().map(Edge::of).collect();
+    [Edge::Left, Edge::Right, Edge::Bottom, Edge::Top, Edge::Hole]
+        .map(|kind| edges.iter().filter(|edge| **edge == kind).count())
+}
+
+fn poured(changes: &[&str]) -> Sources {
+    sources(&with(changes).unwrap())
+}
+
+fn inside(plan: &TablePlan<2>) -> Vec<bool> {
+    (0..plan.rolling.len()).map(|cell| plan.inside(cell)).collect()
 }
 
 const LINE: &str = "grid={x={from=0,to=1,cells=10}}";
@@ -34,22 +57,17 @@ fn the_defaults() {
     assert_eq!((case.scheme.theta_exponent(), case.time.steady_rate(), case.scheme.film()), (2.0, 1e-8, 0.0));
     let first = with(&["scheme.name=first_order"]).unwrap();
     assert_eq!(first.scheme.stepping(), Stepping::Courant(0.45));
-    let plan = case.table().unwrap();
-    assert_eq!((plan.pieces, plan.edges.len(), plan.height.len()), (1, 40, 121));
-    assert!(plan.inside.iter().all(|inside| *inside) && plan.edges.iter().all(|edge| !edge.wall));
-    assert_eq!(plan.open_nodes().iter().filter(|open| **open).count(), 40);
-    assert_eq!(case.sources().unwrap().rate(0.0), [0.5; 100]);
+    let plan = case.table::<2>().unwrap();
+    assert_eq!((plan.table.pieces().len(), plan.table.count(), plan.height.len()), (1, 100, 121));
+    assert_eq!((plan.table.edges().count(), open(&plan)), (40, [10, 10, 10, 10, 0]));
+    assert_eq!(sources(&case).rate(0.0), [0.5; 100]);
+    assert!(case.table::<1>().unwrap_err().to_string().contains("no [grid] of 1 dimension"));
     assert_eq!(case.files(), [FileKind::Netcdf, FileKind::Figures]);
 }
 
 #[test]
 fn sides_holes_and_walls() {
-    let open =
-        |plan: &TablePlan, kind| plan.edges.iter().filter(|edge| edge.kind == kind && !edge.wall).count();
-    let count = |changes: &[&str]| {
-        let plan = plan(changes);
-        [Edge::Left, Edge::Right, Edge::Bottom, Edge::Top, Edge::Hole].map(|kind| open(&plan, kind))
-    };
+    let count = |changes: &[&str]| open(&plan(changes));
     assert_eq!(count(&["table.open=all"]), [10, 10, 10, 10, 0]);
     assert_eq!(count(&["table.open=[\"left\", \"top\"]"]), [10, 0, 0, 10, 0]);
     assert_eq!(count(&[RING]), [10, 10, 10, 10, 8]);
@@ -63,14 +81,24 @@ fn sides_holes_and_walls() {
         [10, 10, 5, 5, 0],
         "edges inside the grid face outwards"
     );
-    let line = plan(&[LINE, "table.open=[\"left\"]"]);
-    assert_eq!(line.open_nodes().iter().position(|open| *open), Some(0));
-    assert_eq!(line.edges.len(), 2);
-    assert_eq!(plan(&[LINE, "table={cut=[{box=[0.4,0.6]}]}"]).pieces, 2);
-    let hole = plan(&[RING]);
-    assert_eq!(hole.hole.iter().filter(|hole| **hole).count(), 4);
+    let line = plan_in::<1>(&[LINE, "table.open=[\"left\"]"]);
+    assert_eq!((open(&line), line.table.edges().count()), ([1, 0, 0, 0, 0], 2));
+    let gap = plan_in::<1>(&[LINE, "table={cut=[{box=[0.4,0.6]}]}"]);
+    assert_eq!((open(&gap), gap.table.pieces().len()), ([1, 1, 0, 0, 2], 2));
     let notch = plan(&["table={cut=[{box=[0.4,0.6,0,0.6]}]}"]);
-    assert!(notch.hole.iter().all(|hole| !hole), "what opens to the rim is no hole");
+    assert_eq!(open(&notch)[4], 0, "what opens to the rim is no hole");
+}
+
+#[test]
+fn cells_on_which_no_sand_can_stand_are_off_the_table() {
+    let tongue = "table={mask={box=[0,0.5]},cut=[{box=[0.3,0.5,0,0.8]},{box=[0.3,0.5,0.9,1]}]}";
+    let plan = plan(&[tongue]);
+    assert_eq!((plan.table.count(), plan.table.dropped()), (30, 2));
+    assert_eq!(plan.rolling.len(), 100, "the cells are numbered as those of the grid");
+    let notes = with(&[tongue]).unwrap().notes().join("\n");
+    assert!(notes.contains("2 cells are taken off the table"), "{notes}");
+    let bar = with(&["table={mask={box=[0,1,0.4,0.5]}}"]).unwrap().check().unwrap_err();
+    assert!(bar.to_string().contains("one cell wide") && bar.key() == "grid", "{bar}");
 }
 
 #[test]
@@ -78,13 +106,13 @@ fn a_disc_has_the_symmetries_of_the_square() {
     let disc = plan(&["table.mask={disc={centre=[0.5,0.5],radius=0.4}}"]);
     for j in 0..10 {
         for i in 0..10 {
-            let at = |i: usize, j: usize| disc.inside[10 * j + i];
+            let at = |i: usize, j: usize| disc.inside(10 * j + i);
             assert!(at(i, j) == at(9 - i, j) && at(i, j) == at(j, i), "{i} {j}");
         }
     }
-    assert_eq!(disc.inside.iter().filter(|inside| **inside).count(), 52);
+    assert_eq!(disc.table.count(), 52);
     assert_eq!(
-        disc.edges.len(),
+        disc.table.edges().count(),
         32,
         "the rim of squares of a disc is as long as that of the square around it"
     );
@@ -101,7 +129,7 @@ fn a_table_from_a_file() {
     };
     let case = load("table.mask.file=table.geojson");
     case.check().unwrap();
-    assert_eq!(case.table().unwrap().inside, plan(&[RING]).inside);
+    assert_eq!(inside(&case.table().unwrap()), inside(&plan(&[RING])));
     let error = load("table.mask.file=tabel.geojson").check().unwrap_err();
     assert_eq!(error.kind(), CaseErrorKind::File);
     assert!(error.to_string().contains("did you mean") && error.key() == "table.mask.file", "{error}");
@@ -136,16 +164,16 @@ fn sources_add_up_and_switch() {
     let three = "source=[{rate=1,on.box=[0,0.5]},{rate=2,from=1,to=3},{rate.formula=\"x*t\",on.disc={centre=[0.5,0.5],radius=0.1}}]";
     let case = with(&[three, "time={end=5}"]).unwrap();
     case.check().unwrap();
-    let sources = case.sources().unwrap();
+    let sources = sources(&case);
     assert_eq!(sources.changes(), [1.0, 3.0]);
     assert!(sources.is_moving() && sources.lasting().is_none());
     let at = |t: f64, cell: usize| sources.rate(t)[cell];
     assert_eq!((at(0.0, 0), at(0.0, 9), at(1.0, 0), at(1.0, 9), at(3.0, 0)), (1.0, 0.0, 3.0, 2.0, 1.0));
     assert_eq!(at(4.0, 44), 1.0 + 0.45 * 4.0);
-    let still = with(&["source=[{rate.formula=\"y\",from=1},{rate=7,to=2}]"]).unwrap().sources().unwrap();
+    let still = poured(&["source=[{rate.formula=\"y\",from=1},{rate=7,to=2}]"]);
     assert!(!still.is_moving());
     assert_eq!(still.lasting().unwrap()[90], 0.95);
-    let dips = with(&["source=[{rate.formula=\"1 - t\"}]"]).unwrap().sources().unwrap();
+    let dips = poured(&["source=[{rate.formula=\"1 - t\"}]"]);
     assert_eq!(dips.rate(2.0)[0], 0.0, "a rate below 0 later on counts as 0");
 }
 
@@ -161,6 +189,7 @@ fn what_may_surprise_is_said() {
     assert!(notes(&["source=[]"]).contains("nothing will move"));
     assert_eq!(notes(&["time.end=1"]), "");
     assert_eq!(notes(&["time.method=direct"]), "", "what does not step has no time limit");
+    assert_eq!(notes(&["time.method=direct", "table={height.formula=\"0.5*x\"}"]), "", "on a slope too");
 }
 
 #[test]
@@ -236,7 +265,6 @@ const BAD: &[(&[&str], &str, &[&str])] = &[
     (&["time.method=direct", "initial={}"], "initial", &["no effect"]),
     (&["time.method=direct", "scheme.step=0.1"], "scheme.step", &["no effect"]),
     (&["time.method=direct", "scheme.theta_exponent=3"], "scheme.theta_exponent", &["no effect"]),
-    (&["time.method=direct", "table={height=1}"], "table.height", &["no effect"]),
     (
         &["time.method=direct", "source=[{rate.formula=\"t\"}]"],
         "source[0].rate",
