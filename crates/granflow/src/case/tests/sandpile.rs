@@ -50,6 +50,25 @@ const LINE: &str = "grid={x={from=0,to=1,cells=10}}";
 const RING: &str = "table={cut=[{box=[0.4,0.6,0.4,0.6]}]}";
 
 #[test]
+fn the_rim_of_a_round_table_stands_at_its_true_edge() {
+    let round = plan(&[
+        "table={mask={disc={centre=[0.5,0.5],radius=0.48}},cut=[{disc={centre=[0.5,0.5],radius=0.2}}]}",
+    ]);
+    let mut rims = [0; 2];
+    for (node, height) in round.height.iter().enumerate() {
+        let [x, y] = round.nodes.at(node);
+        let r = (x - 0.5).hypot(y - 0.5);
+        let depth = (0.48 - r).min(r - 0.2);
+        let expected = if round.table.pinned(node) { depth } else { 0.0 };
+        assert!((height - expected).abs() < 1e-15, "{height} at r = {r}");
+        rims[usize::from(r > 0.3)] += usize::from(round.table.pinned(node));
+    }
+    assert!(rims[0] > 8 && rims[1] > 30, "{rims:?}");
+    assert!(plan(&[RING]).height.iter().all(|height| *height == 0.0), "edges along the grid need none");
+    assert!(plan(&[]).height.iter().all(|height| *height == 0.0));
+}
+
+#[test]
 fn the_defaults() {
     let case = with(&[]).unwrap();
     case.check().unwrap();
