@@ -16,10 +16,13 @@ mod sandpiles;
 /// What stands beside values that no paper prints: the papers' schemes, transcribed and run independently.
 const INDEPENDENT: &str = "independent run of the printed scheme";
 
+/// Draws a picture into a file.
+type Draw<'a> = Box<dyn Fn(&Path) -> Result<(), FigureError> + Sync + 'a>;
+
 /// A picture still to be drawn.
 struct Picture<'a> {
     figure: Figure,
-    draw: Box<dyn Fn(&Path) -> Result<(), FigureError> + Sync + 'a>,
+    draw: Draw<'a>,
 }
 
 /// A section of the page with pictures still to be drawn.

@@ -96,7 +96,7 @@ pub fn errors(runs: &line::Runs, drawn: &[usize], layer: Layer, path: &Path) -> 
         title: "Error against the steady state",
         subtitle: &format!("N = {}, λ = 0.45, to t = {}", line::HISTORIES[0], line::HISTORY_END),
         x: Axis::new("step", ""),
-        y: y.over(1e-17, 1.0),
+        y: y.over(1e-15, 1.0),
         curves: &curves,
         logarithmic: [false, true],
         ..Default::default()

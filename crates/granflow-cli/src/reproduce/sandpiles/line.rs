@@ -152,7 +152,7 @@ pub const FIGURE_4: (usize, f64) = (50, 20.0);
 /// Exponents of Θ that are compared.
 pub const EXPONENTS: [f64; 5] = [2.0, 2.25, 2.5, 2.75, 3.0];
 /// Cells of the histories; those of Fig. 5 come first.
-pub const HISTORIES: [usize; 3] = [50, 100, 200];
+pub const HISTORIES: [usize; 2] = [50, 100];
 /// The time to which they go.
 pub const HISTORY_END: f64 = 60.0;
 

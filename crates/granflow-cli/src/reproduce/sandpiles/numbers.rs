@@ -105,8 +105,8 @@ fn square(rows: &mut Vec<Row>, runs: &plane::Runs) {
         let errors = &runs.table[scheme];
         let columns = [
             (
-                "first column, ours of sup |u - ū|",
-                errors.iter().map(|errors| errors.u[0]).collect::<Vec<_>>(),
+                "first column, ours of sup |v - v̄|",
+                errors.iter().map(|errors| errors.v[0]).collect::<Vec<_>>(),
             ),
             (
                 "second column, ours of the L1 norm of v - v̄",
@@ -136,7 +136,7 @@ fn square(rows: &mut Vec<Row>, runs: &plane::Runs) {
 }
 
 fn piles(rows: &mut Vec<Row>, runs: &plane::Runs) {
-    for pile in &runs.piles {
+    for pile in runs.piles.iter().filter(|pile| pile.is_steady()) {
         let name = format!("sandpiles: {}", pile.example.title);
         let off = pile.off();
         let highest = pile.direct.v.iter().copied().fold(0.0, f64::max);
