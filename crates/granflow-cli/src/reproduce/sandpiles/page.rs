@@ -34,8 +34,8 @@ fn picture<'a>(
 
 fn introduction<'a>() -> Chapter<'a> {
     Chapter {
-        title: "A. Aggarwal, G. D. Veerappa Gowda and K. Sudarshan Kumar, A second-order well-balanced numerical scheme \
-                for a model of growing sandpiles, arXiv 2310.13971 (2023)"
+        title: "A. Aggarwal, G. D. Veerappa Gowda and K. Sudarshan Kumar, A well-balanced second-order finite volume \
+                approximation for a coupled system of granular flow, arXiv 2310.13971 (2023)"
             .into(),
         text: vec![
             "u: standing layer (at the nodes), v: rolling layer (in the cells), in the paper's scaling, in which sand lies at \
