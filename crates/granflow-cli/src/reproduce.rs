@@ -19,8 +19,11 @@ const INDEPENDENT: &str = "independent run of the printed scheme";
 /// A picture still to be drawn.
 struct Picture<'a> {
     figure: Figure,
-    draw: Box<dyn Fn(&Path) -> Result<(), FigureError> + Sync + 'a>,
+    draw: Draw<'a>,
 }
+
+/// What draws a picture to a file.
+type Draw<'a> = Box<dyn Fn(&Path) -> Result<(), FigureError> + Sync + 'a>;
 
 /// A section of the page with pictures still to be drawn.
 #[derive(Default)]
