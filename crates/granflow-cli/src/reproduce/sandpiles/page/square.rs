@@ -45,7 +45,7 @@ pub fn square<'a>(runs: &plane::Runs) -> Chapter<'a> {
              equilibrium, u at the nodes and v in the cells. Only the orders are held against the printed ones, those of \
              sup |v - v̄| against the first column (1), those of the L1 norm of v - v̄ against the second (1.9 for first order \
              and the adaptive scheme; the printed 1.1 of the second-order scheme is not seen here). sup |u - ū| of first order \
-             falls more slowly: on the finest grid the summit is not yet steady at t = 15."
+             falls more slowly: on the finer grids the summit is not yet steady at t = 15 (it ends a third of h low)."
                 .into(),
         ],
         tables,
