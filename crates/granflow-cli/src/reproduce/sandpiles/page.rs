@@ -5,11 +5,12 @@ use std::path::{Path, PathBuf};
 use granflow::output::figures::FigureError;
 use granflow::output::report::{Figure, Table};
 
+mod square;
+
 use super::super::{Chapter, Picture};
 use super::draw::{self, Layer};
 use super::line::{self, Layers};
 use super::numbers::orders;
-use super::plane::{self, Errors, Pile};
 use super::{Runs, SCHEMES, printed};
 
 /// The page's sections on the paper; pictures go into `folder`.
@@ -17,8 +18,8 @@ pub fn chapters<'a>(runs: &'a Runs, folder: &Path) -> Vec<Chapter<'a>> {
     let mut chapters =
         vec![introduction(), transient(runs, folder), balance(&runs.line), steady(runs, folder)];
     chapters.push(iterations(&runs.line, folder));
-    chapters.push(square(&runs.plane));
-    chapters.extend(runs.plane.piles.iter().map(|pile| example(pile, folder)));
+    chapters.push(square::square(&runs.plane));
+    chapters.extend(runs.plane.piles.iter().map(|pile| square::example(pile, folder)));
     chapters
 }
 
@@ -34,8 +35,8 @@ fn picture<'a>(
 
 fn introduction<'a>() -> Chapter<'a> {
     Chapter {
-        title: "A. Aggarwal, G. D. Veerappa Gowda and K. Sudarshan Kumar, A second-order well-balanced numerical scheme \
-                for a model of growing sandpiles, arXiv 2310.13971 (2023)"
+        title: "A. Aggarwal, G. D. Veerappa Gowda and K. Sudarshan Kumar, A well-balanced second-order finite volume \
+                approximation for a coupled system of granular flow, arXiv 2310.13971 (2023)"
             .into(),
         text: vec![
             "u: standing layer (at the nodes), v: rolling layer (in the cells), in the paper's scaling, in which sand lies at \
@@ -54,27 +55,38 @@ fn table(title: &str, head: &[&str], lines: Vec<Vec<String>>) -> Table {
     Table { title: title.into(), head: head.iter().map(|text| (*text).to_owned()).collect(), lines }
 }
 
-/// Errors and orders on finer and finer grids, each with the printed one.
-fn column(errors: &[f64], printed: &[printed::Entry]) -> Vec<[String; 2]> {
-    let ours = orders(errors);
-    (errors.iter().zip(printed).enumerate())
-        .map(|(k, (error, (published, order)))| {
-            let rate = |rate: Option<f64>| rate.map_or_else(|| "–".into(), |rate| format!("{rate:.4}"));
-            let ours = rate(k.checked_sub(1).map(|k| ours[k]));
-            [format!("{error:.6} ({published})"), format!("{ours} ({})", rate(*order))]
-        })
-        .collect()
+/// Errors on finer and finer grids and their orders.
+fn ours(errors: &[f64]) -> Vec<[String; 2]> {
+    let orders = orders(errors);
+    let order = |k: usize| k.checked_sub(1).map(|k| orders[k]);
+    errors.iter().enumerate().map(|(k, error)| [format!("{error:.6}"), rate(order(k))]).collect()
+}
+
+/// A printed error and its order.
+fn theirs((error, order): printed::Entry) -> [String; 2] {
+    [error.to_string(), rate(order)]
+}
+
+fn rate(order: Option<f64>) -> String {
+    order.map_or_else(|| "–".into(), |order| format!("{order:.4}"))
 }
 
 fn transient<'a>(runs: &'a Runs, folder: &Path) -> Chapter<'a> {
     let runs = &runs.line;
     let tables = SCHEMES.iter().enumerate().map(|(scheme, (name, _))| {
         let of = |k: usize| -> Vec<f64> { runs.table_1[scheme].iter().map(|errors| errors[k]).collect() };
-        let [u, v] = [0, 1].map(|k| column(&of(k), &printed::TABLE_1[scheme][k]));
-        let lines = line::TABLE_1.iter().zip(u.into_iter().zip(v));
-        let lines = lines.map(|(n, (u, v))| [vec![format!("1/{n}")], u.to_vec(), v.to_vec()].concat());
+        let columns = [0, 1].map(|k| ours(&of(k)));
+        let line = |k: usize| {
+            let both = (0..2).flat_map(|column| {
+                let theirs = theirs(printed::TABLE_1[scheme][column][k]);
+                let ours = &columns[column][k];
+                [0, 1].map(|part| format!("{} ({})", ours[part], theirs[part]))
+            });
+            [format!("1/{}", line::TABLE_1[k])].into_iter().chain(both).collect()
+        };
+        let lines: Vec<_> = (0..line::TABLE_1.len()).map(line).collect();
         let head = ["h", "sup |u - u_ref| (printed)", "E.O.C.", "L1 of v - v_ref (printed)", "E.O.C."];
-        table(&format!("Table 1: {name}"), &head, lines.collect())
+        table(&format!("Table 1: {name}"), &head, lines)
     });
     let pictures = Layer::BOTH.map(|layer| {
         let letter = layer.letter();
@@ -201,110 +213,5 @@ fn iterations<'a>(runs: &'a line::Runs, folder: &Path) -> Chapter<'a> {
         ],
         tables: tables.collect(),
         pictures: pictures.into(),
-    }
-}
-
-fn square<'a>(runs: &plane::Runs) -> Chapter<'a> {
-    let mut tables = Vec::new();
-    for (scheme, (name, _)) in SCHEMES.iter().enumerate() {
-        let errors = &runs.table[scheme];
-        let printed = printed::SQUARE[scheme];
-        let of = |value: fn(&Errors) -> f64| -> Vec<[String; 2]> {
-            let errors: Vec<f64> = errors.iter().map(value).collect();
-            let unprinted = [(f64::NAN, None); 3];
-            column(&errors, &unprinted)
-        };
-        let columns: [Vec<[String; 2]>; 4] = [of(|e| e.u[0]), of(|e| e.u[1]), of(|e| e.v[0]), of(|e| e.v[1])];
-        let bare = |[error, order]: &[String; 2]| {
-            [error, order].map(|text| text.split(" (").next().unwrap_or_default().to_owned())
-        };
-        let lines = plane::GRIDS.iter().enumerate().map(|(k, n)| {
-            let ours = columns.iter().flat_map(|column| bare(&column[k]));
-            let theirs = printed.iter().flat_map(|column| {
-                let (error, order) = column[k];
-                [format!("{error}"), order.map_or_else(|| "–".into(), |order| format!("{order}"))]
-            });
-            [format!("1/{n}")].into_iter().chain(ours).chain(theirs).collect()
-        });
-        let head = [
-            "h",
-            "sup u",
-            "E.O.C.",
-            "L1 u",
-            "E.O.C.",
-            "sup v",
-            "E.O.C.",
-            "L1 v",
-            "E.O.C.",
-            "printed 1",
-            "E.O.C.",
-            "printed 2",
-            "E.O.C.",
-        ];
-        tables.push(table(&format!("Square, complete source: {name}"), &head, lines.collect()));
-    }
-    Chapter {
-        title: "sandpiles: the table of errors in two dimensions".into(),
-        text: vec![
-            "The paper's last table has lost the headings of its two columns; which variable, which norm, which f and which \
-             time they are is not known, and no reading that was tried gives both columns' sizes. Ours: all sides open, \
-             f = 0.5 on the whole square, t = 15, nine tenths of the step that eqs. 26, 27 allow, against the exact \
-             equilibrium, u at the nodes and v in the cells. Only the orders are held against the printed ones, those of \
-             sup |v - v̄| against the first column (1), those of the L1 norm of v - v̄ against the second (1.9 for first order \
-             and the adaptive scheme; the printed 1.1 of the second-order scheme is not seen here). sup |u - ū| of first order \
-             falls more slowly: on the finest grid the summit is not yet steady at t = 15."
-                .into(),
-        ],
-        tables,
-        ..Chapter::default()
-    }
-}
-
-fn example<'a>(pile: &'a Pile, folder: &Path) -> Chapter<'a> {
-    let example = pile.example;
-    let off = pile.off();
-    let most = pile.v.iter().copied().fold(0.0, f64::max);
-    let shown = draw::largest_shown(&pile.v);
-    let clipped = if shown < most {
-        format!(" v reaches {most:.2}; the colours end at {shown:.2}, which one cell in a hundred exceeds.")
-    } else {
-        String::new()
-    };
-    let number = |value: f64| format!("{value:.2e}");
-    let line = |name: &str, [sup, l1]: [f64; 2]| vec![name.to_owned(), number(sup), number(l1)];
-    let file = |what: &str| (format!("sandpiles_2d_{}_{what}", example.name), format!("Sandpiles, {what}"));
-    Chapter {
-        title: format!("sandpiles: {}", example.title),
-        text: vec![
-            example.about.into(),
-            format!(
-                "Grown by the first-order scheme on {n} × {n} cells to t = {:.1} ({} steps), where max |u_t| = {:.1e} and \
-                 max |v_t| = {:.1e}.",
-                pile.end.0,
-                pile.end.1,
-                pile.drift[0],
-                pile.drift[1],
-                n = plane::CELLS
-            ),
-        ],
-        tables: vec![table(
-            "Against the equilibrium that is computed without time steps",
-            &["", "sup", "L1"],
-            vec![line("u", off.u), line("v", off.v)],
-        )],
-        pictures: vec![
-            picture(
-                folder,
-                file("pile"),
-                format!("The pile in perspective, coloured by the rolling layer.{clipped}"),
-                move |path| draw::pile(pile, path),
-            ),
-            picture(
-                folder,
-                file("sections"),
-                "Both layers along two lines, against x; v in the cells just above the line.".into(),
-                move |path| draw::sections(pile, path),
-            ),
-        ],
     }
 }

@@ -137,7 +137,9 @@ pub const EXAMPLES: [Example; 3] = [
         title: "Partially open table",
         about: "f = 0.5 on the whole square, open on the lower half of the left side (x = 0, y < 1/2), walls elsewhere. \
                 The paper's walls are in a figure that is lost: these are assumed. Above y = 1/2 all rays end in the \
-                point (0, 1/2), near which v grows like one over the distance to it.",
+                point (0, 1/2), near which v grows like one over the distance to it. The cells beside the wall above it hold about twice the v of \
+                the next ones, in the run and in the equilibrium without time steps alike: what the upwind transport spreads \
+                towards the wall rolls down along it.",
         source: |_, _| true,
         wall: but_half_a_side,
         sections: [Some(0.3), Some(0.7)],
