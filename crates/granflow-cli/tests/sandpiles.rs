@@ -164,7 +164,9 @@ fn what_grows_in_time_is_what_is_computed_at_once() {
 fn alike_sides_get_alike() {
     for name in ["sandpile", "sandpile_disc", "sandpile_source"] {
         let [left, right, bottom, top, hole] = run(name, 16, &["time.end=5"]).outflow();
-        assert!(left > 0.0 && [right, bottom, top] == [left; 3] && hole == 0.0, "{name}");
+        // Columns and rows are summed in different pieces: rounding of the sums, not of the piles.
+        let alike = |side: f64| (side - left).abs() < 1e-14 * left;
+        assert!(left > 0.0 && [right, bottom, top].into_iter().all(alike) && hole == 0.0, "{name}");
     }
     let [left, right, bottom, top, _] = run("sandpile_walls", 10, &["time.end=10"]).outflow();
     assert!(left > 0.0 && bottom > left && [right, top] == [0.0; 2], "no sand passes a wall");
