@@ -25,9 +25,6 @@ struct Picture<'a> {
     draw: Draw<'a>,
 }
 
-/// What draws a picture to a file.
-type Draw<'a> = Box<dyn Fn(&Path) -> Result<(), FigureError> + Sync + 'a>;
-
 /// A section of the page with pictures still to be drawn.
 #[derive(Default)]
 struct Chapter<'a> {
