@@ -1,14 +1,17 @@
 //! `granflow check`: what a case would compute, and how large it is.
 
-use granflow::case::{Axis, Case, Frames, Grid, SchemeName, Side, Slope, Stepping};
+use granflow::case::{Axis, Case, Frames, Grid, Model, SchemeName, Side, Slope, Stepping, Until};
+use granflow::hadeler_kuttler::scheme::HadelerKuttler;
 use granflow::savage_hutter::Flow;
 use granflow::savage_hutter::ground::Bed;
 use granflow::scheme::Scheme;
-use granflow::setup::{Scene, Visit};
+use granflow::setup::{Sand, Scene, Visit};
 use granflow::simulation::Simulation;
 use granflow::terrain::Terrain;
 
 use crate::failure::{Failure, print};
+
+mod sandpile;
 
 /// A fast avalanche \[m/s\].
 const FAST: f64 = 30.0;
@@ -43,10 +46,34 @@ impl Visit for Look {
         let margin = simulation.margins().into_iter().fold(0.0, f64::max);
         Start { rate: simulation.rate(), margin, volume: totals.volume, wet: totals.wet }
     }
+
+    fn visit_sand<const D: usize>(
+        self,
+        _sand: &Sand<D>,
+        mut simulation: Simulation<D, HadelerKuttler>,
+    ) -> Start {
+        let totals = simulation.totals();
+        let margin = simulation.margins().into_iter().fold(0.0, f64::max);
+        Start { rate: simulation.rate(), margin, volume: totals.volume, wet: totals.wet }
+    }
 }
 
 /// Prints the resolved case and the estimates.
 pub fn check(case: &Case) -> Result<(), Failure> {
+    let lines = match case.model {
+        Model::SavageHutter => avalanche(case)?,
+        Model::HadelerKuttler => sandpile::lines(case)?,
+    };
+    let text: String = lines.iter().map(|(name, value)| format!("{name:16} {value}\n")).collect();
+    let notes: String = case.notes().iter().map(|note| format!("note: {note}\n")).collect();
+    print(&format!(
+        "{text}{notes}\nThe case is in order. Resolved (angles in radians):\n\n{}",
+        case.to_toml()
+    ))
+}
+
+/// The lines about an avalanche.
+fn avalanche(case: &Case) -> Result<Vec<(&'static str, String)>, Failure> {
     let scene = Scene::load(case)?;
     let mut lines = describe(case);
     let cells = match (&scene, &case.grid) {
@@ -58,25 +85,27 @@ pub fn check(case: &Case) -> Result<(), Failure> {
             lines.extend(grid_lines(case, grid)?);
             cells[0] * cells[1]
         }
+        (Scene::Line(sand), _) => sand.plan.rolling.len(),
+        (Scene::Table(sand), _) => sand.plan.rolling.len(),
         (Scene::Chute { .. }, None) => 0,
     };
     let start = scene.simulate(case, Look);
     lines.push(("mass", format!("{:.6} in {} cells", start.volume, start.wet)));
     let verdict = if start.margin > 1.0 { "it will start" } else { "it rests" };
     lines.push(("pull", format!("at most {:.6} of what friction holds: {verdict}", start.margin)));
-    lines.push(("memory", memory(cells)));
-    lines.push(("steps", steps(case, start.rate)));
+    lines.extend(effort(case, cells, start.rate));
+    Ok(lines)
+}
+
+/// Memory and steps, from the Courant number of a step of length 1 at the start.
+fn effort(case: &Case, cells: usize, rate: f64) -> Vec<(&'static str, String)> {
+    let mut lines = vec![("memory", memory(cells)), ("steps", steps(case, rate))];
     if let Stepping::Fixed(step) = case.scheme.stepping() {
-        let (courant, limit) = (step * start.rate, case.scheme.name.courant_limit());
+        let (courant, limit) = (step * rate, case.scheme.name.courant_limit());
         let verdict = if courant <= limit { "in order" } else { "too large, the scheme is not stable there" };
         lines.push(("Courant number", format!("{courant:.4} at the start (at most {limit}): {verdict}")));
     }
-    let text: String = lines.iter().map(|(name, value)| format!("{name:16} {value}\n")).collect();
-    let notes: String = case.notes().iter().map(|note| format!("note: {note}\n")).collect();
-    print(&format!(
-        "{text}{notes}\nThe case is in order. Resolved (angles in radians):\n\n{}",
-        case.to_toml()
-    ))
+    lines
 }
 
 /// The lines about a terrain: size, steepness, curvature under a fast mass.
@@ -111,40 +140,46 @@ fn terrain_lines(terrain: &Terrain) -> Vec<(&'static str, String)> {
 
 /// What the case says, with its defaults.
 fn describe(case: &Case) -> Vec<(&'static str, String)> {
-    let friction = &case.material.friction;
-    let mu = friction.mu();
-    let pressure = case.material.pressure_coefficient();
-    let name = case.scheme.name;
-    let order = if name == SchemeName::Balanced2 { "second" } else { "first" };
-    let film = case.scheme.film();
     let files: Vec<&str> = case.files().iter().map(|kind| kind.as_str()).collect();
     let frames = match case.frames() {
         Frames::Every(time) => format!("every {time} in time"),
         Frames::Steps(steps) => format!("every {steps} steps"),
         Frames::Ends => "at the start and at the end".to_owned(),
     };
-    vec![
-        (
-            "case",
-            format!(
-                "{} ({})",
-                if case.title.is_empty() { "without a title" } else { &case.title },
-                case.source_name()
-            ),
-        ),
+    let title = if case.title.is_empty() { "without a title" } else { &case.title };
+    let mut lines = vec![
+        ("case", format!("{title} ({})", case.source_name())),
         ("model", case.model.as_str().to_owned()),
-        ("friction", format!("{}, mu = {mu:.6} ({:.3} deg)", friction.name(), mu.atan().to_degrees())),
-        (
-            "material",
-            format!("k = {pressure:.6}, gravity {}, density {}", case.gravity(), case.material.density()),
-        ),
-        (
-            "scheme",
-            format!("{}, {order} order, film {film:e}, {}", name.as_str(), stepping(case.scheme.stepping())),
-        ),
+    ];
+    if let Some(material) = &case.material {
+        let (friction, mu) = (&material.friction, material.friction.mu());
+        let (pressure, density) = (material.pressure_coefficient(), material.density());
+        lines.extend([
+            ("friction", format!("{}, mu = {mu:.6} ({:.3} deg)", friction.name(), mu.atan().to_degrees())),
+            ("material", format!("k = {pressure:.6}, gravity {}, density {density}", case.gravity())),
+        ]);
+    }
+    lines.extend([
+        ("scheme", scheme(case)),
         ("ends", ends(case)),
         ("output", format!("{} {frames}, {:?}", files.join(", "), case.precision()).to_lowercase()),
-    ]
+    ]);
+    lines
+}
+
+fn scheme(case: &Case) -> String {
+    let name = case.scheme.name;
+    let (order, parameter) = match name {
+        SchemeName::Balanced2 => ("second order", format!("film {:e}, ", case.scheme.film())),
+        SchemeName::FirstOrder => ("first order", String::new()),
+        SchemeName::SecondOrder => ("second order", String::new()),
+        SchemeName::Adaptive => (
+            "second order away from steady states",
+            format!("theta_exponent {}, ", case.scheme.theta_exponent()),
+        ),
+        _ => ("first order", format!("film {:e}, ", case.scheme.film())),
+    };
+    format!("{}, {order}, {parameter}{}", name.as_str(), stepping(case.scheme.stepping()))
 }
 
 fn stepping(stepping: Stepping) -> String {
@@ -157,9 +192,11 @@ fn stepping(stepping: Stepping) -> String {
 fn ends(case: &Case) -> String {
     let time = &case.time;
     let mut ways = Vec::new();
-    ways.extend(time.until.map(|_| match time.rest_speed {
-        Some(speed) => format!("below speed {speed:e}"),
-        None => "at rest".to_owned(),
+    ways.extend(time.until.map(|until| match (until, time.method, time.rest_speed) {
+        (Until::Steady, Some(_), _) => "at the equilibrium, computed directly".to_owned(),
+        (Until::Steady, None, _) => format!("steady, changes below {:e} in time", time.steady_rate()),
+        (Until::Rest, _, Some(speed)) => format!("below speed {speed:e}"),
+        (Until::Rest, _, None) => "at rest".to_owned(),
     }));
     ways.extend(
         time.stop.as_ref().map(|stop| format!("at {} of the peak kinetic energy", stop.kinetic_energy)),
@@ -170,24 +207,18 @@ fn ends(case: &Case) -> String {
 }
 
 fn grid_lines(case: &Case, grid: &Grid) -> Result<Vec<(&'static str, String)>, Failure> {
-    let axis = |name: &str, axis: &Axis, sides: [Side; 2]| {
+    let with_sides = |name: &str, axis: &Axis, sides: [Side; 2]| {
         let [low, high] = sides.map(|side| format!("{side:?}").to_lowercase());
-        format!(
-            "{name} from {} to {}, {} cells of {}, {low} | {high}",
-            axis.from,
-            axis.to,
-            axis.cells,
-            axis.width()
-        )
+        format!("{}, {low} | {high}", axis_line(name, axis))
     };
     let sides = grid.sides();
-    let mut lines = vec![("grid", axis("x", &grid.x, sides[0]))];
-    lines.extend(grid.y.as_ref().map(|y| ("", axis("y", y, sides[1]))));
+    let mut lines = vec![("grid", with_sides("x", &grid.x, sides[0]))];
+    lines.extend(grid.y.as_ref().map(|y| ("", with_sides("y", y, sides[1]))));
 
     let chute = case.chute()?;
     let slopes: Vec<f64> = grid.x.centres().iter().map(|x| chute.zeta(*x)).collect();
     let (low, high) = range(&slopes);
-    lines.push(match case.material.slope {
+    lines.push(match case.material().slope {
         Some(Slope::Profile(_)) => {
             ("slope", format!("{:.4} to {:.4} deg", low.to_degrees(), high.to_degrees()))
         }
@@ -201,6 +232,10 @@ fn grid_lines(case: &Case, grid: &Grid) -> Result<Vec<(&'static str, String)>, F
     let mass = state.thickness.iter().sum::<f64>() * area;
     lines.push(("thickness", format!("{low} to {high}, mass {mass:.6}, {wet} wet cells")));
     Ok(lines)
+}
+
+fn axis_line(name: &str, axis: &Axis) -> String {
+    format!("{name} from {} to {}, {} cells of {}", axis.from, axis.to, axis.cells, axis.width())
 }
 
 fn range(values: &[f64]) -> (f64, f64) {

@@ -32,7 +32,7 @@ Examples:
 Exit status: 0 done; 2 bad usage or bad case; 3 the computation failed; 4 a file could not be read or written;
 130 interrupted.";
 
-/// Where a granular mass comes to rest: Savage-Hutter avalanches on grids and real terrain.
+/// Where a granular mass comes to rest: Savage-Hutter avalanches on grids and real terrain, Hadeler-Kuttler sandpiles on tables.
 #[derive(Debug, Parser)]
 #[command(name = "granflow", version, after_help = EXAMPLES, arg_required_else_help = true)]
 struct Arguments {

@@ -44,6 +44,15 @@ pub const TEMPLATES: &[Template] = &[
     template!("riemann", "a step without friction, with its exact solution (Kaland & Struckmeier)"),
     template!("sine", "a heap on a steep slope splits in two (Kaland & Struckmeier)"),
     template!("plane", "a cap on an inclined plane in two dimensions, SI units (Hutter et al. 1993)"),
+    template!("sandpile", "sand is poured on a square table, until as much falls off (Aggarwal et al. 2023)"),
+    template!("sandpile_1d", "the same between two edges (Aggarwal et al. 2023)"),
+    template!("sandpile_source", "the source on a part of the table only (Aggarwal et al. 2023)"),
+    template!("sandpile_walls", "walls along parts of the edges (Aggarwal et al. 2023)"),
+    template!("sandpile_disc", "a round table: a cone"),
+    template!("sandpile_l", "an L-shaped table with a wall"),
+    template!("silo_hole", "a silo empties through a hole in its floor"),
+    template!("sandpile_switched", "three sources switched on and off"),
+    template!("sandpile_moving", "a source that goes round"),
     template!("avalanche", "a mountain, a release and the way to rest; writes a small mountain too"),
 ];
 
@@ -52,7 +61,7 @@ pub fn list() -> Result<(), Failure> {
     print(
         &TEMPLATES
             .iter()
-            .map(|template| format!("{:14} {}\n", template.kind, template.about))
+            .map(|template| format!("{:18} {}\n", template.kind, template.about))
             .collect::<String>(),
     )
 }

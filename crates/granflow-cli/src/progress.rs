@@ -21,10 +21,12 @@ pub struct Status {
     pub end: Option<f64>,
     /// Steps done.
     pub step: u64,
-    /// Cells that hold more than a film.
+    /// Cells that hold more than a film, or on a sandpile some sand.
     pub wet_cells: usize,
-    /// Largest speed of a cell.
-    pub max_speed: f64,
+    /// Largest speed of a cell, or on a sandpile the largest thickness of the rolling layer.
+    pub most: f64,
+    /// Is it a sandpile?
+    pub sand: bool,
 }
 
 impl Status {
@@ -36,13 +38,18 @@ impl Status {
 
     /// One line of words and numbers; `elapsed` is the wall time since `begin`, the share at the start.
     fn line(&self, begin: f64, elapsed: Duration) -> String {
-        let Self { time, end, step, wet_cells, max_speed } = self;
+        let Self { time, end, step, wet_cells, most, sand } = self;
         let end = end.map(|end| format!(" of {end:.4}")).unwrap_or_default();
         let left = self
             .left(begin, elapsed)
             .map(|left| format!(", at most {} left", words(left)))
             .unwrap_or_default();
-        format!("time {time:.4}{end}, step {step}, {wet_cells} wet cells, speed {max_speed:.3e}{left}")
+        let state = if *sand {
+            format!("{wet_cells} cells with sand, rolling layer at most {most:.3e}")
+        } else {
+            format!("{wet_cells} wet cells, speed {most:.3e}")
+        };
+        format!("time {time:.4}{end}, step {step}, {state}{left}")
     }
 
     /// Wall time left if the rest goes as fast as what was done.
@@ -116,7 +123,7 @@ mod tests {
 
     #[test]
     fn the_line_says_where_the_run_is() {
-        let status = Status { time: 2.5, end: Some(10.0), step: 250, wet_cells: 40, max_speed: 1.25 };
+        let status = Status { time: 2.5, end: Some(10.0), step: 250, wet_cells: 40, most: 1.25, sand: false };
         let line = status.line(0.0, Duration::from_secs(30));
         assert_eq!(
             line,
@@ -126,6 +133,11 @@ mod tests {
         assert_eq!(
             open.line(0.0, Duration::from_secs(30)),
             "time 2.5000, step 250, 40 wet cells, speed 1.250e0"
+        );
+        let pile = Status { sand: true, ..open };
+        assert_eq!(
+            pile.line(0.0, Duration::from_secs(30)),
+            "time 2.5000, step 250, 40 cells with sand, rolling layer at most 1.250e0"
         );
         let resumed = status.left(0.2, Duration::from_secs(10));
         assert_eq!(resumed.map(|left| left.as_secs()), Some(150), "only the part of this session counts");

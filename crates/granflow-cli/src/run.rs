@@ -3,7 +3,7 @@
 use std::num::NonZeroUsize;
 use std::path::{Path, PathBuf};
 
-use granflow::case::Case;
+use granflow::case::{Case, Model};
 use granflow::output::summary::StopReason;
 use granflow::results::{FILM_SHARE, Finished};
 use granflow::run::{self, Options};
@@ -58,7 +58,7 @@ fn line(finished: &Finished) -> String {
 pub fn compute(case: &Case, options: &RunOptions) -> Result<Finished, Failure> {
     let stop = interrupt::listen()?;
     let mut progress = Progress::new(options.quiet);
-    let end = case.time.end;
+    let (end, sand) = (case.time.end, case.model == Model::HadelerKuttler);
     let options = Options {
         directory: options.directory(case),
         threads: options.threads.map_or(0, NonZeroUsize::get),
@@ -67,7 +67,7 @@ pub fn compute(case: &Case, options: &RunOptions) -> Result<Finished, Failure> {
     };
     let mut report = |status: &run::Status| {
         let run::Status { time, step, wet_cells, max_speed } = *status;
-        progress.show(&Status { time, end, step, wet_cells, max_speed });
+        progress.show(&Status { time, end, step, wet_cells, most: max_speed, sand });
     };
     let finished = run::run(case, &options, stop, &mut report);
     progress.finish();

@@ -78,7 +78,15 @@ const ON_A_GRID: &[Bad] = &[
     ("{ angle =", "{ angel =", 9, &["unknown key `angel`", "did you mean `angle`?"], 2),
     ("thickness.steps", "thickness.step", 11, &["found `step`", "did you mean `steps`?", "parabola"], 2),
     ("\"open\"", "\"opn\"", 5, &["grid.boundary", "did you mean `open`?"], 2),
-    ("\"savage_hutter\"", "\"hadeler_kuttler\"", 2, &["not in this version", "allowed: savage_hutter"], 2),
+    (
+        "\"savage_hutter\"",
+        "\"hadeler_kuttler\"",
+        6,
+        &["`material` has no meaning for hadeler_kuttler", "remove it"],
+        2,
+    ),
+    ("\"savage_hutter\"", "\"sandpile\"", 2, &["allowed: savage_hutter, hadeler_kuttler"], 2),
+    ("[time]", "[table]\nopen = \"all\"\n[time]", 15, &["`table` belongs to the model hadeler_kuttler"], 2),
     ("\"savage_hutter\"", "\"savage_huter\"", 2, &["did you mean `savage_hutter`?"], 2),
     // missing keys
     (
@@ -184,7 +192,13 @@ const ON_A_GRID: &[Bad] = &[
     // what the published schemes cannot do
     ("steps = 100", "until = \"rest\"\n[output]\nfiles = [\"geotiff\"]", 18, &["needs [terrain]"], 2),
     ("steps = 100", "rest_speed = 1e-3\nend = 1.0", 16, &["without until"], 2),
-    ("steps = 100", "until = \"steady\"", 16, &["found `steady`", "allowed: rest"], 2),
+    (
+        "steps = 100",
+        "until = \"steady\"",
+        16,
+        &["savage_hutter has no end \"steady\"", "until = \"rest\""],
+        2,
+    ),
     ("steps = 100", "steps = 100\n[output]\nevery = 1.0\nsteps = 10", 19, &["both `every` and `steps`"], 2),
     ("steps = 100", "steps = 100\n[output]\nfiles = [\"netcdf\", \"vkt\"]", 18, &["did you mean `vtk`?"], 2),
     // files
@@ -357,7 +371,18 @@ fn every_kind_is_written_once_and_is_in_order() {
     let list = granflow(folder.path(), &["new", "--list"]);
     let list = String::from_utf8_lossy(&list.stdout).into_owned();
     let kinds: Vec<&str> = list.lines().filter_map(|line| line.split_whitespace().next()).collect();
-    assert_eq!(kinds, ["silo", "inclined_silo", "parabola", "riemann", "sine", "plane", "avalanche"]);
+    let avalanches = ["silo", "inclined_silo", "parabola", "riemann", "sine", "plane"];
+    let sandpiles = [
+        "sandpile",
+        "sandpile_1d",
+        "sandpile_source",
+        "sandpile_walls",
+        "sandpile_disc",
+        "sandpile_l",
+        "silo_hole",
+    ];
+    let poured = ["sandpile_switched", "sandpile_moving", "avalanche"];
+    assert_eq!(kinds, [&avalanches[..], &sandpiles[..], &poured[..]].concat());
     for kind in kinds {
         let file = format!("{kind}.toml");
         assert_eq!(granflow(folder.path(), &["new", kind]).status.code(), Some(0), "{kind}");
@@ -388,6 +413,28 @@ fn the_estimates_are_right() {
 }
 
 #[test]
+fn a_sandpile_is_described() {
+    let folder = tempfile::tempdir().expect("a folder");
+    assert_eq!(granflow(folder.path(), &["new", "sandpile_l", "l.toml"]).status.code(), Some(0));
+    let output = granflow(folder.path(), &["check", "l.toml"]);
+    let said = String::from_utf8_lossy(&output.stdout).into_owned();
+    // three quarters of the square, 40 edges along each direction of which the wall takes 20
+    assert!(said.contains("1200 cells, 0.750000 in all"), "{said}");
+    assert!(said.contains("open: 40 left, 40 right, 40 bottom, 20 top; walls: 20 top"), "{said}");
+    assert!(said.contains("0.375000 a time at the start"), "{said}");
+    // 0.225 * 0.025/2
+    assert!(said.contains("of 2.812e-3 in time") && said.contains("changes below 1e-8"), "{said}");
+    let direct = ["check", "l.toml", "--set", "time={until=\"steady\",method=\"direct\"}"];
+    let said = String::from_utf8_lossy(&granflow(folder.path(), &direct).stdout).into_owned();
+    assert!(said.contains("at the equilibrium, computed directly"), "{said}");
+    // what is printed is a case again
+    let resolved = said.split_once(":\n\n").expect("the resolved case").1;
+    std::fs::write(folder.path().join("again.toml"), resolved).expect("a case");
+    let again = granflow(folder.path(), &["check", "again.toml"]);
+    assert_eq!(again.status.code(), Some(0), "{}", told(&again));
+}
+
+#[test]
 fn the_schema_names_every_key() {
     let folder = tempfile::tempdir().expect("a folder");
     let output = granflow(folder.path(), &["schema"]);
@@ -404,7 +451,7 @@ fn the_schema_names_every_key() {
             assert!(known.contains(key), "the schema does not know {key}")
         });
     }
-    assert!(seen >= 7);
+    assert!(seen >= 17);
     for key in [
         "velocity_y",
         "rest_speed",
@@ -415,6 +462,13 @@ fn the_schema_names_every_key() {
         "attribute",
         "precision",
         "kinetic_energy",
+        "standing_layer",
+        "theta_exponent",
+        "steady_rate",
+        "method",
+        "height",
+        "wall",
+        "disc",
     ] {
         assert!(known.contains(key), "the schema does not know {key}");
     }

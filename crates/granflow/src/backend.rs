@@ -30,7 +30,7 @@ pub const fn tile_size(dimensions: usize) -> [usize; 2] {
 }
 
 /// Most tiles above each other that one thread computes in one go: the rows between them are then read once.
-pub const MOST_TILES: usize = 8;
+pub const MOST_TILES: usize = 4;
 
 /// Tiles above each other that are awake, by their numbers' places in the list.
 pub type Run = Range<usize>;

@@ -2,8 +2,8 @@
 //!
 //! [`Case::load`] reads a file, [`Case::parse`] a text; both know the place of every key, so that each error names
 //! file, line and key, what was found and what is allowed. [`Case::check`] then says everything that can be said
-//! before work starts, and the evaluators ([`Case::chute`], [`Case::initial_state`], [`Case::frames`]) turn the words
-//! into plain numbers.
+//! before work starts, and the evaluators ([`Case::chute`], [`Case::initial_state`], [`Case::table`],
+//! [`Case::sources`], [`Case::frames`]) turn the words into plain numbers.
 //!
 //! ```
 //! use granflow::case::Case;
@@ -37,9 +37,14 @@ mod grid;
 mod initial;
 mod material;
 mod output;
+mod plan;
+mod region;
+mod sand;
 mod scheme;
 mod slope;
 mod source;
+mod state;
+mod table;
 mod terrain;
 mod time;
 mod units;
@@ -47,15 +52,20 @@ mod units;
 pub use crate::output::Precision;
 pub use fault::{CaseError, CaseErrorKind, nearest};
 pub use formula::{Formula, FormulaError};
-pub use grid::{Axis, AxisSides, Boundary, Grid, Side, SidePair};
+pub use grid::{Axis, AxisSides, Boundary, Grid, Points, Side, SidePair};
 pub use initial::{Cap, Centre, Cone, Initial, Parabola, Quantity, Shape, Steps};
 pub use material::{Cohesion, Coulomb, EarthPressure, Friction, Material, Samosat, Voellmy};
 pub use output::{FileKind, Frames, Output};
+pub use plan::TablePlan;
+pub use region::{Disc, Region};
+pub use sand::{Rate, SandSource, Sources, Varying};
 pub use scheme::{Scheme, SchemeName, Stepping};
 pub use slope::{Chute, Profile, Slope};
 pub use source::Source;
+pub use state::InitialState;
+pub use table::{Edge, Table, Wall};
 pub use terrain::{Attribute, Curvature, Measured, Off, Release, ReleaseCap, Terrain, Thickness, Window};
-pub use time::{Stop, Time, Until};
+pub use time::{Method, Stop, Time, Until};
 pub use units::{Angle, Length};
 
 /// A case: a model on a grid or on terrain, from its start to its end.
@@ -75,8 +85,15 @@ pub struct Case {
     /// The mountain; a case has `[grid]` or `[terrain]`.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub terrain: Option<Terrain>,
-    /// The material.
-    pub material: Material,
+    /// The table of hadeler_kuttler: the whole grid, open at all edges, if the case does not say.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub table: Option<Table>,
+    /// The sand that is poured on the table, hadeler_kuttler.
+    #[serde(default, rename = "source", skip_serializing_if = "Vec::is_empty")]
+    pub sources: Vec<SandSource>,
+    /// The material; savage_hutter needs it, hadeler_kuttler has none: its slopes are in units of the angle of repose.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub material: Option<Material>,
     /// The state at the start, on a grid.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub initial: Option<Initial>,
@@ -103,6 +120,8 @@ pub enum Model {
     /// A granular avalanche, depth-averaged (Savage & Hutter 1989).
     #[default]
     SavageHutter,
+    /// A growing sandpile, a standing and a rolling layer on a table (Hadeler & Kuttler 1999).
+    HadelerKuttler,
 }
 
 impl Model {
@@ -111,19 +130,9 @@ impl Model {
     pub fn as_str(self) -> &'static str {
         match self {
             Self::SavageHutter => "savage_hutter",
+            Self::HadelerKuttler => "hadeler_kuttler",
         }
     }
-}
-
-/// The state at time 0 at the centres of the cells, x fastest.
-#[derive(Debug, Clone, PartialEq)]
-pub struct InitialState {
-    /// Thickness h, not negative.
-    pub thickness: Vec<f64>,
-    /// Velocity along x.
-    pub velocity_x: Vec<f64>,
-    /// Velocity along y, 0 in one dimension.
-    pub velocity_y: Vec<f64>,
 }
 
 impl Case {
@@ -142,16 +151,16 @@ impl Case {
     pub fn parse_with(text: &str, source_name: &str, overrides: &[String]) -> Result<Self, CaseError> {
         let source = Source::read(source_name, text, overrides)?;
         let document = source.document()?;
-        if let Some(toml::de::DeValue::String(name)) =
-            document.get_ref().get("model").map(toml::Spanned::get_ref)
-            && name == "hadeler_kuttler"
-        {
-            return Err(source
-                .fault("model", "the model hadeler_kuttler is not in this version")
-                .help("allowed: savage_hutter"));
-        }
         let parsed = Self::deserialize(toml::de::Deserializer::from(document));
         let mut case = parsed.map_err(|error| source.explain(&error))?;
+        // defaults that depend on the model
+        match (case.model, &mut case.grid) {
+            (Model::SavageHutter, Some(grid)) => _ = grid.boundary.get_or_insert_default(),
+            (Model::HadelerKuttler, _) if !source.has("scheme.name") => {
+                case.scheme.name = SchemeName::Adaptive
+            }
+            _ => {}
+        }
         case.source = source;
         Ok(case)
     }
@@ -211,10 +220,16 @@ impl Case {
         toml::to_string(self).unwrap_or_default()
     }
 
+    /// The material; one without friction where the case has none.
+    #[must_use]
+    pub fn material(&self) -> &Material {
+        self.material.as_ref().unwrap_or(&material::NONE)
+    }
+
     /// Gravity: what the case says, else 9.81 m/s^2 on terrain and 1 on a grid.
     #[must_use]
     pub fn gravity(&self) -> f64 {
-        self.material.gravity.unwrap_or(if self.terrain.is_some() { 9.81 } else { 1.0 })
+        self.material().gravity.unwrap_or(if self.terrain.is_some() { 9.81 } else { 1.0 })
     }
 
     /// The inclination of the chute along x; flat if the case does not say.
@@ -222,50 +237,11 @@ impl Case {
     /// # Errors
     /// [`CaseError`] for a profile that cannot be evaluated.
     pub fn chute(&self) -> Result<Chute, CaseError> {
-        let slope = self.material.slope.clone().unwrap_or_default();
+        let slope = self.material().slope.clone().unwrap_or_default();
         Chute::new(&slope).map_err(|fault| {
             let dot = if fault.key.is_empty() { "" } else { "." };
             self.source.fault_in(&format!("material.slope{dot}{}", fault.key), fault.part, fault.message)
         })
-    }
-
-    /// Thickness and velocity at the centres of the cells of a case with a grid.
-    ///
-    /// # Errors
-    /// [`CaseError`] for a quantity that cannot be evaluated, a negative thickness or a number that is not finite.
-    pub fn initial_state(&self) -> Result<InitialState, CaseError> {
-        let (Some(grid), Some(initial)) = (&self.grid, &self.initial) else {
-            return Err(self.source.fault("initial", "the case has no [grid] with an [initial] state"));
-        };
-        let thickness = self.evaluate(grid, "thickness", Some(&initial.thickness))?;
-        if let Some(cell) = thickness.iter().position(|h| *h < 0.0) {
-            let message = format!("the thickness is {} at {}", thickness[cell], place(grid, cell));
-            return Err(self
-                .source
-                .fault("initial.thickness", message)
-                .help("a thickness is never negative; max(..., 0) cuts a formula off"));
-        }
-        Ok(InitialState {
-            thickness,
-            velocity_x: self.evaluate(grid, "velocity_x", initial.velocity_x.as_ref())?,
-            velocity_y: self.evaluate(grid, "velocity_y", initial.velocity_y.as_ref())?,
-        })
-    }
-
-    fn evaluate(&self, grid: &Grid, name: &str, quantity: Option<&Quantity>) -> Result<Vec<f64>, CaseError> {
-        let key = format!("initial.{name}");
-        let values =
-            quantity.unwrap_or(&Quantity::Constant(0.0)).on(grid, &self.folder()).map_err(|fault| {
-                let error = self.source.fault_in(&format!("{key}.{}", fault.key), fault.part, fault.message);
-                if fault.file { error.file() } else { error }
-            })?;
-        match values.iter().position(|value| !value.is_finite()) {
-            None => Ok(values),
-            Some(cell) => Err(self
-                .source
-                .fault(&key, format!("the value is {} at {}", values[cell], place(grid, cell)))
-                .help("every cell needs a finite number")),
-        }
     }
 
     /// When the state is written.
@@ -304,15 +280,6 @@ impl Case {
 #[must_use]
 pub fn json_schema() -> serde_json::Value {
     schemars::schema_for!(Case).to_value()
-}
-
-/// Where a cell lies, in words.
-fn place(grid: &Grid, cell: usize) -> String {
-    let x = grid.x.centre(cell % grid.x.cells);
-    match &grid.y {
-        None => format!("x = {x}"),
-        Some(y) => format!("x = {x}, y = {}", y.centre(cell / grid.x.cells)),
-    }
 }
 
 #[cfg(test)]

@@ -4,9 +4,15 @@
 //! eqs. 1, 2), in the paper's scaling: slopes in units of the tangent of the angle of repose. Where the table itself is
 //! not flat, grad u stands for the slope of the surface u + b, b the height of the table.
 //!
-//! [`scheme::HadelerKuttler`] computes it, [`Ground`] says where sand lies, falls off and is held back.
+//! [`scheme::HadelerKuttler`] computes it, [`table::Table`] says where sand lies, falls off and is held
+//! back, [`site::Site`] lays it out for a run, [`direct`] gives the state it comes to rest in without time steps, [`exact`]
+//! what it should come to rest in.
 
+pub mod direct;
+pub mod exact;
 pub mod scheme;
+pub mod site;
+pub mod table;
 
 use crate::real::{Real, each, unroll};
 use crate::scheme::Parts;

@@ -319,10 +319,6 @@ impl<S: Simd> Real for Lanes<S> {
     fn ln(self) -> Self {
         self.each(f64::ln)
     }
-    #[inline(always)]
-    fn powf(self, exponent: f64) -> Self {
-        self.each(|x| x.powf(exponent))
-    }
 }
 
 impl<S: Simd> Wide for Lanes<S> {

@@ -58,6 +58,7 @@ pub mod case;
 mod field;
 pub mod grid;
 pub mod hadeler_kuttler;
+mod lanes;
 pub mod limiter;
 mod observe;
 pub mod output;

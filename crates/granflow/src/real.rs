@@ -48,8 +48,6 @@ pub trait Real:
     fn abs(self) -> Self;
     /// Natural logarithm.
     fn ln(self) -> Self;
-    /// self^exponent.
-    fn powf(self, exponent: f64) -> Self;
 
     /// Zero.
     #[inline(always)]
@@ -154,10 +152,6 @@ impl Real for f64 {
     #[inline(always)]
     fn abs(self) -> f64 {
         f64::abs(self)
-    }
-    #[inline(always)]
-    fn powf(self, exponent: f64) -> f64 {
-        f64::powf(self, exponent)
     }
     #[inline(always)]
     fn ln(self) -> f64 {

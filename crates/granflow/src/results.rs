@@ -8,10 +8,14 @@ mod history_figure;
 mod mountain_figures;
 mod outlines;
 mod path;
+mod plane;
+mod profiles;
 mod rasters;
 mod story;
+mod table_figures;
 
 pub use files::{FILM_SHARE, FilesError};
+pub use plane::{Plane, Table, Under};
 pub use story::Story;
 
 use crate::case::{Case, FileKind};
@@ -20,62 +24,8 @@ use crate::output::ledger::Entry;
 use crate::output::netcdf::{Axis, Crs, Dataset, Values, Variable, history};
 use crate::output::summary::Summary;
 use crate::output::{self, Precision};
-use crate::raster::Raster;
-use crate::setup::Scene;
 use std::path::{Path, PathBuf};
 use std::time::SystemTime;
-
-/// Where the cells lie, and what lies under them.
-#[derive(Debug, Clone)]
-pub struct Plane {
-    /// Cell centres along x.
-    pub x: Vec<f64>,
-    /// Cell centres along y; empty in one dimension.
-    pub y: Vec<f64>,
-    /// The mountain, if it is one; lengths are then metres, times seconds.
-    pub bed: Option<Raster>,
-    /// Released thickness normal to the bed on a mountain, thickness at the start on a chute.
-    pub release: Vec<f64>,
-}
-
-impl Plane {
-    /// The cells of a scene, from the lower corner, the size and the number of cells per axis.
-    #[must_use]
-    pub fn of(scene: &Scene, origin: &[f64], size: &[f64], cells: &[usize]) -> Plane {
-        let centres =
-            |k: usize| (0..cells[k]).map(|i| origin[k] + (i as f64 + 0.5) * size[k]).collect::<Vec<f64>>();
-        let (bed, release) = match scene {
-            Scene::Chute { initial, .. } => (None, initial.thickness.clone()),
-            Scene::Mountain { terrain, release, .. } => {
-                let normal = |(k, volume): (usize, &f64)| volume * terrain.cosine(k);
-                (Some(terrain.bed.clone()), release.iter().enumerate().map(normal).collect())
-            }
-        };
-        Plane { x: centres(0), y: if cells.len() > 1 { centres(1) } else { Vec::new() }, bed, release }
-    }
-    /// Is it a mountain?
-    #[must_use]
-    pub fn is_terrain(&self) -> bool {
-        self.bed.is_some()
-    }
-    /// Bed elevation of every cell \[m\], on a mountain.
-    #[must_use]
-    pub fn bed(&self) -> Option<&[f64]> {
-        self.bed.as_ref().map(|raster| raster.values.as_slice())
-    }
-    /// Names of the quantities that are kept as series, in the order of the frames.
-    #[must_use]
-    pub fn series(&self) -> Vec<&'static str> {
-        let mut names = vec!["thickness", "velocity_x"];
-        if !self.y.is_empty() {
-            names.push("velocity_y");
-        }
-        if self.is_terrain() {
-            names.extend(["surface", "speed"]);
-        }
-        names
-    }
-}
 
 /// A run that has ended, with all it leaves.
 #[derive(Debug)]
@@ -92,8 +42,8 @@ pub struct Finished {
     pub frames: Frames,
     /// The ledger.
     pub ledger: Vec<Entry>,
-    /// peak_thickness, peak_speed, peak_pressure (terrain, kPa), arrival_time, stopping_time, deposit, yield_margin;
-    /// x fastest, the first row in the south.
+    /// peak_thickness, peak_speed, peak_pressure (terrain, kPa), arrival_time, stopping_time, deposit, yield_margin; on a
+    /// table source (cells) and determined (nodes); x fastest, the first row in the south.
     pub maps: Vec<(&'static str, Vec<f64>)>,
     /// A thinner layer is a film.
     pub film: f64,
@@ -102,7 +52,7 @@ pub struct Finished {
 }
 
 /// Names of the maps that a run may leave.
-const MAPS: [&str; 7] = [
+const MAPS: [&str; 9] = [
     "peak_thickness",
     "peak_speed",
     "peak_pressure",
@@ -110,10 +60,12 @@ const MAPS: [&str; 7] = [
     "stopping_time",
     "deposit",
     "yield_margin",
+    "source",
+    "determined",
 ];
 
 /// Name, long name, and units in the papers' scaling and in SI.
-const QUANTITIES: [(&str, &str, &str, &str); 13] = [
+const QUANTITIES: [(&str, &str, &str, &str); 20] = [
     ("thickness", "thickness normal to the bed", "1", "m"),
     ("velocity_x", "velocity along x", "1", "m s-1"),
     ("velocity_y", "velocity along y", "1", "m s-1"),
@@ -127,6 +79,13 @@ const QUANTITIES: [(&str, &str, &str, &str); 13] = [
     ("stopping_time", "time at which the cell last moved", "1", "s"),
     ("deposit", "thickness normal to the bed at the end", "1", "m"),
     ("yield_margin", "pull at the end as a share of the largest that friction holds", "1", "1"),
+    ("standing_layer", "thickness of the standing layer", "1", "1"),
+    ("rolling_layer", "thickness of the rolling layer", "1", "1"),
+    ("table_height", "height of the table", "1", "1"),
+    ("source", "sand poured on per area and time at the end", "1", "1"),
+    ("determined", "1 where the equilibrium fixes the standing layer, else 0", "1", "1"),
+    ("wall_x", "1 where the face across x is a wall, else 0", "1", "1"),
+    ("wall_y", "1 where the face across y is a wall, else 0", "1", "1"),
 ];
 
 /// The peak pressure that counts as reached, for the runout \[kPa\].
@@ -134,23 +93,22 @@ const REACHED: f64 = 1.0;
 
 impl Finished {
     /// Put together what a run leaves, with the maps and figures that follow from others.
-    #[expect(clippy::too_many_arguments, reason = "the parts of one struct, each needed")]
-    pub(crate) fn new(
+    #[must_use]
+    pub fn new(
         case: &Case,
         directory: PathBuf,
         plane: Plane,
         frames: Frames,
         ledger: Vec<Entry>,
         mut maps: Vec<(&'static str, Vec<f64>)>,
-        deposit: Vec<f64>,
-        margins: Vec<f64>,
         mut summary: Summary,
     ) -> Finished {
         let largest = |values: &[f64]| values.iter().fold(0.0_f64, |most, v| most.max(*v));
         if plane.is_terrain()
             && let Some((_, speed)) = maps.iter().find(|(name, _)| *name == "peak_speed")
         {
-            let pressure: Vec<f64> = speed.iter().map(|v| case.material.density() * v * v / 1000.0).collect();
+            let pressure: Vec<f64> =
+                speed.iter().map(|v| case.material().density() * v * v / 1000.0).collect();
             summary.add("peak_pressure_max", largest(&pressure));
             if let Some((length, drop)) = runout(&plane, &pressure) {
                 summary.runout = Some(length);
@@ -158,8 +116,6 @@ impl Finished {
             }
             maps.push(("peak_pressure", pressure));
         }
-        maps.push(("deposit", deposit));
-        maps.push(("yield_margin", margins));
         for (name, values) in &maps {
             if matches!(*name, "peak_thickness" | "peak_speed" | "deposit" | "yield_margin") {
                 summary.add(&format!("{name}_max"), largest(values));
@@ -184,42 +140,59 @@ impl Finished {
         let (length, time) = if terrain { ("m", "s") } else { ("1", "1") };
         let mut frames = Frames::open(self.frames.path())?.0;
         let mut axes = vec![Axis::time(frames.times().to_vec(), time)];
-        let mut space = vec!["x".to_owned()];
-        if !self.plane.y.is_empty() {
-            axes.push(Axis::along("Y", "y", self.plane.y.clone(), length, terrain));
-            space.insert(0, "y".to_owned());
+        let (x, y) = (&self.plane.x, &self.plane.y);
+        let mut along = |axis, name: &str, places: &[f64]| {
+            if !places.is_empty() {
+                axes.push(Axis::along(axis, name, places.to_vec(), length, terrain));
+            }
+        };
+        along("Y", "y", y);
+        along("X", "x", x);
+        if let Some(table) = self.plane.as_table() {
+            along("Y", "y_node", &table.y_node);
+            along("X", "x_node", &table.x_node);
         }
-        axes.push(Axis::along("X", "x", self.plane.x.clone(), length, terrain));
         let precision = frames.precision();
-        let variable = |name: &str, series: bool, precision: Precision, values: Values| {
+        let variable = |name: &str, at: [&str; 2], series: bool, precision: Precision, values: Values| {
             let (_, long_name, scaled, si) =
                 QUANTITIES.iter().find(|(known, ..)| *known == name).copied().unwrap_or(("", "", "1", "1"));
-            let mut axes = space.clone();
-            if series {
-                axes.insert(0, "time".to_owned());
-            }
+            let space = if y.is_empty() { &at[1..] } else { &at };
+            let axes = series.then_some("time").into_iter().chain(space.iter().copied());
             let units = if terrain { si } else { scaled }.to_owned();
             Variable {
                 name: name.to_owned(),
                 long_name: long_name.to_owned(),
                 units,
-                axes,
+                axes: axes.map(str::to_owned).collect(),
                 precision,
                 values,
             }
         };
-        let mut variables: Vec<Variable> = frames
-            .fields()
-            .iter()
-            .map(|field| variable(&field.name, true, precision, Values::Stored(field.name.clone())))
-            .collect();
+        let cells = x.len() * y.len().max(1);
+        let place = |length: usize| if length == cells { ["y", "x"] } else { ["y_node", "x_node"] };
+        let mut variables: Vec<Variable> = Vec::new();
+        for field in frames.fields() {
+            let stored = Values::Stored(field.name.clone());
+            variables.push(variable(&field.name, place(field.length), true, precision, stored));
+        }
+        let mut fixed = |name: &str, at: [&str; 2], precision: Precision, map: &[f64]| {
+            if !map.is_empty() {
+                variables.push(variable(name, at, false, precision, Values::Static(map.to_vec())));
+            }
+        };
         if let Some(bed) = self.plane.bed() {
-            variables.push(variable("bed", false, Precision::F64, Values::Static(bed.to_vec())));
+            fixed("bed", ["y", "x"], Precision::F64, bed);
+        }
+        if let Some(table) = self.plane.as_table() {
+            let faces = |walls: &[bool]| walls.iter().map(|&wall| f64::from(wall)).collect::<Vec<f64>>();
+            fixed("table_height", ["y_node", "x_node"], Precision::F64, &table.height);
+            fixed("wall_x", ["y", "x_node"], precision, &faces(&table.wall_x));
+            fixed("wall_y", ["y_node", "x"], precision, &faces(&table.wall_y));
         }
         for (name, map) in &self.maps {
-            variables.push(variable(name, false, precision, Values::Static(map.clone())));
+            fixed(name, place(map.len()), precision, map);
         }
-        let crs = self.plane.bed.as_ref().and_then(|bed| bed.crs.as_ref());
+        let crs = self.plane.mountain().and_then(|bed| bed.crs.as_ref());
         let dataset = Dataset {
             title: self.summary.title.clone(),
             history: history(SystemTime::now(), command),

@@ -1,20 +1,23 @@
 //! A run from its case to its end: steps, books, frames, checkpoints, and why it stopped.
 
-use crate::backend::EXITS;
+mod model;
+
 use crate::case::{self, Case};
 use crate::field::Field;
+use crate::hadeler_kuttler::scheme::HadelerKuttler;
 use crate::observe::Maps;
 use crate::output;
 use crate::output::checkpoint::{Checkpoint, case_hash};
-use crate::output::frames::{self, Frames};
+use crate::output::frames::Frames;
 use crate::output::ledger::{Entry, Ledger};
 use crate::output::summary::{StopReason, Summary};
 use crate::results::{Finished, Plane};
 use crate::savage_hutter::Flow;
 use crate::savage_hutter::ground::Bed;
 use crate::scheme::Scheme;
-use crate::setup::{Scene, SetupError, Visit};
+use crate::setup::{Sand, Scene, SetupError, Visit};
 use crate::simulation::{CLOCK, Failure, Simulation};
+use model::Model;
 use std::borrow::Cow;
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -122,20 +125,34 @@ struct Work<'a> {
 
 impl Visit for Work<'_> {
     type Output = Result<Finished, RunError>;
+
     fn visit<const D: usize, S>(self, simulation: Simulation<D, S>) -> Self::Output
     where
         S: Scheme<D, f64, State = Flow<D, f64>>,
         S::Ground: Bed<D, f64>,
     {
-        Run::start(self, simulation)?.go()
+        let (grid, scene) = (simulation.grid(), self.scene);
+        let plane = Plane::of(scene, &grid.origin, &grid.size, grid.cells.as_slice());
+        Run::start(self, simulation, plane, None)?.go()
+    }
+
+    fn visit_sand<const D: usize>(
+        self,
+        sand: &Sand<D>,
+        simulation: Simulation<D, HadelerKuttler>,
+    ) -> Self::Output {
+        Run::start(self, simulation, sand.plane(), Some(sand))?.go()
     }
 }
 
 /// A run under way.
-struct Run<'a, const D: usize, S: Scheme<D, f64>> {
+struct Run<'a, 's, const D: usize, S: Scheme<D, f64>> {
     work: Work<'a>,
     simulation: Simulation<D, S>,
     plane: Plane,
+    /// The table and its sources, and until when they flow as they do now.
+    sand: Option<&'s Sand<D>>,
+    pouring: f64,
     frames: Frames,
     ledger: Ledger,
     /// Volume at the start.
@@ -150,19 +167,16 @@ struct Run<'a, const D: usize, S: Scheme<D, f64>> {
     joined: (Instant, f64),
 }
 
-impl<const D: usize, S> Run<'_, D, S>
-where
-    S: Scheme<D, f64, State = Flow<D, f64>>,
-    S::Ground: Bed<D, f64>,
-{
-    fn start<'a>(work: Work<'a>, mut simulation: Simulation<D, S>) -> Result<Run<'a, D, S>, RunError> {
-        simulation.keep_maps();
-        let plane = Plane::of(
-            work.scene,
-            &simulation.grid().origin,
-            &simulation.grid().size,
-            simulation.grid().cells.as_slice(),
-        );
+impl<'s, const D: usize, S: Model<D>> Run<'_, 's, D, S> {
+    fn start<'a>(
+        work: Work<'a>,
+        mut simulation: Simulation<D, S>,
+        plane: Plane,
+        sand: Option<&'s Sand<D>>,
+    ) -> Result<Run<'a, 's, D, S>, RunError> {
+        if S::PEAKS {
+            simulation.keep_maps();
+        }
         let directory = &work.options.directory;
         let (frame_file, ledger_file) = (frames_in(directory), directory.join("mass.csv"));
         let initial = simulation.totals().volume;
@@ -182,7 +196,7 @@ where
                 return Err(RunError::Resume { directory: directory.clone(), problem });
             }
             let scalar = |name: &str| checkpoint.scalar(name).unwrap_or(0.0);
-            let mut run = Run::new(work, simulation, plane, frames, ledger, initial);
+            let mut run = Run::new(work, simulation, plane, sand, frames, ledger, initial);
             run.peak_speed = scalar("peak_speed");
             run.peak_energy = scalar("peak_energy");
             run.initial = scalar("initial");
@@ -191,12 +205,9 @@ where
             return Ok(run);
         }
         output::remove_leftovers(directory)?;
-        let length = simulation.grid().count();
-        let field = |name: &&str| frames::Field { name: (*name).to_owned(), length };
-        let fields = plane.series().iter().map(field).collect();
-        let frames = Frames::create(&frame_file, work.case.precision(), fields)?;
-        let ledger = Ledger::create(&ledger_file)?;
-        let mut run = Run::new(work, simulation, plane, frames, ledger, initial);
+        let frames = Frames::create(&frame_file, work.case.precision(), plane.series())?;
+        let ledger = Ledger::create(&ledger_file, plane.exits())?;
+        let mut run = Run::new(work, simulation, plane, sand, frames, ledger, initial);
         run.peak_speed = run.simulation.speed();
         run.peak_energy = run.simulation.energy();
         run.frame()?;
@@ -208,15 +219,18 @@ where
         work: Work<'a>,
         simulation: Simulation<D, S>,
         plane: Plane,
+        sand: Option<&'s Sand<D>>,
         frames: Frames,
         ledger: Ledger,
         initial: f64,
-    ) -> Run<'a, D, S> {
+    ) -> Run<'a, 's, D, S> {
         let now = Instant::now();
         Run {
             work,
             simulation,
             plane,
+            sand,
+            pouring: f64::NEG_INFINITY,
             frames,
             ledger,
             initial,
@@ -263,7 +277,8 @@ where
                 break reason;
             }
             // A fixed step is never cut for a frame: the frame waits for the step.
-            let until = if self.simulation.is_adaptive() { self.next_frame.min(end) } else { end };
+            let next = self.pour(end);
+            let until = if self.simulation.is_adaptive() { self.next_frame.min(end).min(next) } else { end };
             if !self.simulation.wanted_step().is_finite() && !until.is_finite() {
                 break StopReason::AtRest;
             }
@@ -282,6 +297,30 @@ where
         finished.write_result(&self.work.options.command)?;
         finished.summary.write(&finished.directory.join("summary.json"))?;
         Ok(finished)
+    }
+
+    /// Let the sources flow as they will in the next step; the time at which they change.
+    fn pour(&mut self, end: f64) -> f64 {
+        let Some(sand) = self.sand else { return f64::INFINITY };
+        let time = self.simulation.time();
+        let adaptive = self.simulation.is_adaptive();
+        let after = |time: f64| {
+            sand.sources.changes().into_iter().find(|change| *change > time).unwrap_or(f64::INFINITY)
+        };
+        // The middle of the step: second order where a rate varies, and the better side of a change within a fixed step.
+        let half = 0.5 * self.simulation.wanted_step().min(end.min(self.next_frame) - time);
+        if sand.sources.is_moving() {
+            let next = after(time);
+            let middle = if adaptive { time + half.min(0.5 * (next - time)) } else { time + half };
+            S::pour(&mut self.simulation, sand, middle);
+            return next;
+        }
+        let now = if adaptive { time } else { time + half };
+        if now >= self.pouring && sand.equilibrium.is_none() {
+            S::pour(&mut self.simulation, sand, now);
+            self.pouring = after(now);
+        }
+        self.pouring
     }
 
     fn after_step(&mut self) -> Result<(), RunError> {
@@ -322,7 +361,10 @@ where
         if self.work.stop.load(Ordering::Relaxed) {
             return Some(StopReason::Interrupted);
         }
-        if time.until.is_some() {
+        if time.until == Some(case::Until::Steady) && self.is_steady(time.steady_rate()) {
+            return Some(StopReason::Steady);
+        }
+        if time.until == Some(case::Until::Rest) {
             // Where no cell could send a signal (nothing but films), nothing will ever move.
             if simulation.at_rest() || simulation.rate() == 0.0 {
                 return Some(StopReason::AtRest);
@@ -347,6 +389,15 @@ where
         (time.steps.is_some_and(|steps| simulation.step() >= steps)).then_some(StopReason::Steps)
     }
 
+    /// Nothing changes faster than `rate`, no source will change any more; or the equilibrium was found at once.
+    fn is_steady(&self, rate: f64) -> bool {
+        let Some(sand) = self.sand else { return false };
+        let time = self.simulation.time();
+        let changes = sand.sources.is_moving() || sand.sources.changes().iter().any(|change| *change > time);
+        let [u, v, _] = self.simulation.drift();
+        sand.equilibrium.is_some() || (!changes && u < rate && v < rate)
+    }
+
     /// Save what there is before the failed step is reported.
     fn failed(&mut self, failure: Failure, time: f64) -> Result<RunError, RunError> {
         // The state after the failed step is worth nothing; the frames and the last checkpoint are.
@@ -362,41 +413,25 @@ where
         }
         let totals = self.simulation.totals();
         let out = self.simulation.out();
-        let gone: f64 = output::ledger::sum(out);
+        let (gone, mass_in) = (output::ledger::sum(out), self.simulation.poured());
         self.ledger.append(Entry {
             time: self.simulation.time(),
             step: self.simulation.step(),
             mass: totals.volume,
-            mass_in: 0.0,
+            mass_in,
             out,
-            mass_error: relative(totals.volume + gone - self.initial, self.initial),
+            mass_error: relative(totals.volume + gone - self.initial - mass_in, self.initial + mass_in),
             wet_cells: totals.wet as u64,
             moving_cells: totals.moving as u64,
-            max_speed: totals.speed,
-            kinetic_energy: totals.energy,
+            max_speed: if S::PEAKS { totals.speed } else { f64::NAN },
+            kinetic_energy: if S::PEAKS { totals.energy } else { f64::NAN },
         })?;
         Ok(())
     }
 
     /// A frame of the series and its line in the ledger.
     fn frame(&mut self) -> Result<(), RunError> {
-        let count = self.plane.series().len();
-        let mut series = vec![Vec::with_capacity(self.simulation.grid().count()); count];
-        for number in 0..self.simulation.grid().count() {
-            let index = self.simulation.grid().index(number);
-            let cell = self.simulation.cell(index);
-            let u = cell.state.velocity();
-            let thickness = cell.ground.thickness(cell.state.h);
-            series[0].push(thickness);
-            for k in 0..D {
-                series[1 + k].push(u[k]);
-            }
-            if let Some(bed) = self.plane.bed() {
-                let cos = cell.ground.thickness(1.0);
-                series[1 + D].push(bed[number] + cos * thickness);
-                series[2 + D].push(cell.ground.square(u).sqrt());
-            }
-        }
+        let series = S::frame(&self.simulation, &self.plane);
         let slices: Vec<&[f64]> = series.iter().map(Vec::as_slice).collect();
         self.frames.append(self.simulation.time(), &slices)?;
         self.line()
@@ -441,29 +476,31 @@ where
     }
 
     fn finish(&mut self, stop_reason: StopReason) -> Result<Finished, RunError> {
-        let margins = self.simulation.margins();
+        let end = S::maps(&mut self.simulation, self.sand);
         let simulation = &self.simulation;
         let totals = simulation.totals();
         let out = simulation.out();
-        let gone = output::ledger::sum(out);
+        let (gone, mass_in) = (output::ledger::sum(out), simulation.poured());
         let wall = self.work.clock.elapsed().as_secs_f64();
         let case = self.work.case;
         let maps = simulation.maps.as_ref();
-        let stopping_time = (stop_reason == StopReason::AtRest).then(|| simulation.time());
+        let stopped = matches!(stop_reason, StopReason::AtRest | StopReason::Steady);
+        let direct = self.sand.is_some_and(|sand| sand.equilibrium.is_some());
+        let stopping_time = (stopped && !direct).then(|| simulation.time());
         let mut summary = Summary {
             title: case.title.clone(),
             model: case.model.as_str().to_owned(),
-            scheme: case.scheme.name.as_str().to_owned(),
-            cells: simulation.grid().count() as u64,
+            scheme: if direct { "direct" } else { case.scheme.name.as_str() }.to_owned(),
+            cells: (self.plane.x.len() * self.plane.y.len().max(1)) as u64,
             steps: simulation.step(),
             time: simulation.time(),
             stop_reason,
             stopping_time,
             mass_initial: self.initial,
             mass_final: totals.volume,
-            mass_in: 0.0,
+            mass_in,
             mass_out: gone,
-            mass_error: relative(totals.volume + gone - self.initial, self.initial),
+            mass_error: relative(totals.volume + gone - self.initial - mass_in, self.initial + mass_in),
             film_volume: totals.film,
             max_speed_final: totals.speed,
             max_speed: self.peak_speed,
@@ -475,18 +512,15 @@ where
             version: env!("CARGO_PKG_VERSION").to_owned(),
             extra: serde_json::Map::new(),
         };
-        for (name, value) in EXITS.iter().zip(out) {
+        for (name, value) in self.plane.exits().iter().zip(out) {
             summary.add(&format!("mass_out_{name}"), value);
         }
-        summary.add("kinetic_energy_final", totals.energy);
-        summary.add("moving_cells_final", totals.moving as f64);
-        summary.add("film_share", relative(totals.film, totals.volume));
+        S::sum_up(simulation, self.sand, &mut summary);
         let unpad = |map: &[f64]| -> Vec<f64> {
             let place = |number| simulation.place(simulation.grid().index(number));
             (0..simulation.grid().count()).map(|number| map[place(number)]).collect()
         };
         let named = maps.into_iter().flat_map(Maps::named).map(|(name, map)| (name, unpad(map)));
-        let deposit = simulation.collect(|cell| cell.ground.thickness(cell.state.h));
         let (frames, _) = Frames::open(self.frames.path())?;
         Ok(Finished::new(
             case,
@@ -494,9 +528,7 @@ where
             self.plane.clone(),
             frames,
             self.ledger.entries().to_vec(),
-            named.collect(),
-            deposit,
-            margins,
+            named.chain(end).collect(),
             summary,
         ))
     }
@@ -516,13 +548,13 @@ fn checkpoint_in(directory: &Path) -> PathBuf {
 }
 
 /// Put a checkpoint back; what does not fit, if anything.
-fn restore<const D: usize, S>(simulation: &mut Simulation<D, S>, saved: &Checkpoint) -> Option<String>
-where
-    S: Scheme<D, f64, State = Flow<D, f64>>,
-{
+fn restore<const D: usize, S: Scheme<D, f64>>(
+    simulation: &mut Simulation<D, S>,
+    saved: &Checkpoint,
+) -> Option<String> {
     let clock: Vec<f64> = (0..CLOCK).map_while(|k| saved.scalar(&format!("clock_{k}"))).collect();
     let part = |k: usize| saved.array(&format!("state_{k}")).map(<[f64]>::to_vec);
-    let parts: Vec<Vec<f64>> = (0..=D).map_while(part).collect();
+    let parts: Vec<Vec<f64>> = (0..simulation.arrays().parts.len()).map_while(part).collect();
     if !simulation.restore(&clock, Field { parts }) {
         return Some("its state has another shape".to_owned());
     }

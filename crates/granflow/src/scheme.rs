@@ -115,13 +115,19 @@ pub struct Spacing<const D: usize, R> {
     pub size: [R; D],
     /// 1/dx, 1/dy.
     pub per: [R; D],
+    /// The smallest of dx, dy.
+    pub smallest: f64,
 }
 
 impl<const D: usize, R: Real> Spacing<D, R> {
     /// From the cell sizes.
     #[inline(always)]
     pub fn new(size: [f64; D]) -> Self {
-        Spacing { size: each!(k => R::of(size[k])), per: each!(k => R::of(1.0 / size[k])) }
+        Spacing {
+            size: each!(k => R::of(size[k])),
+            per: each!(k => R::of(1.0 / size[k])),
+            smallest: size.into_iter().fold(f64::INFINITY, f64::min),
+        }
     }
 }
 

@@ -1,7 +1,12 @@
 //! From a case file to a simulation: files read, geometry computed, the scheme chosen.
 
-use crate::case::{self, Case, CaseError, SchemeName, Stepping};
+mod sand;
+
+pub use sand::Sand;
+
+use crate::case::{self, Case, CaseError, Model, SchemeName, Stepping};
 use crate::grid::Grid;
+use crate::hadeler_kuttler::scheme::HadelerKuttler;
 use crate::raster::{Crs, Raster, RasterError};
 use crate::release::{self, ReleaseError};
 use crate::savage_hutter::Flow;
@@ -66,6 +71,10 @@ pub enum Scene {
         /// Released volume per plan area H \[m\].
         release: Vec<f64>,
     },
+    /// A table in one dimension, with what is poured on it.
+    Line(Box<Sand<1>>),
+    /// A table.
+    Table(Box<Sand<2>>),
 }
 
 /// Work on a simulation of whatever dimension and scheme.
@@ -77,6 +86,12 @@ pub trait Visit {
     where
         S: Scheme<D, f64, State = Flow<D, f64>>,
         S::Ground: Bed<D, f64>;
+    /// Do it for a growing sandpile.
+    fn visit_sand<const D: usize>(
+        self,
+        sand: &Sand<D>,
+        simulation: Simulation<D, HadelerKuttler>,
+    ) -> Self::Output;
 }
 
 impl Scene {
@@ -87,6 +102,10 @@ impl Scene {
     pub fn load(case: &Case) -> Result<Scene, SetupError> {
         case.check()?;
         match (&case.grid, &case.terrain) {
+            (Some(grid), _) if case.model == Model::HadelerKuttler => Ok(match grid.y {
+                None => Scene::Line(Box::new(Sand::load(case, grid)?)),
+                Some(_) => Scene::Table(Box::new(Sand::load(case, grid)?)),
+            }),
             (Some(grid), _) => Ok(Self::chute(case, grid)?),
             (None, Some(terrain)) => Self::mountain(case, terrain),
             (None, None) => {
@@ -96,7 +115,7 @@ impl Scene {
     }
 
     fn chute(case: &Case, grid: &case::Grid) -> Result<Scene, CaseError> {
-        let (chute, material) = (case.chute()?, &case.material);
+        let (chute, material) = (case.chute()?, case.material());
         let cells = grid.cells();
         let gravity = case.gravity();
         let column = |i: usize| {
@@ -191,7 +210,12 @@ impl Scene {
 
     /// Build the simulation that the case asks for and hand it to `work`.
     pub fn simulate<V: Visit>(&self, case: &Case, work: V) -> V::Output {
-        let material = &case.material;
+        match self {
+            Scene::Line(sand) => return work.visit_sand(sand, sand.simulation(case)),
+            Scene::Table(sand) => return work.visit_sand(sand, sand.simulation(case)),
+            Scene::Chute { .. } | Scene::Mountain { .. } => {}
+        }
+        let material = case.material();
         let density = material.density();
         let mu = material.friction.mu();
         match &material.friction {
@@ -232,7 +256,7 @@ impl Scene {
                 ))
             }
             Scene::Chute { cells, .. } if cells[1] == 1 => self.on_chute::<1, V, F>(case, friction, work),
-            Scene::Chute { .. } => self.on_chute::<2, V, F>(case, friction, work),
+            _ => self.on_chute::<2, V, F>(case, friction, work),
         }
     }
 
@@ -273,7 +297,7 @@ impl Scene {
         let step = step_size(case);
         let film = case.scheme.film();
         let kinetic = |published: Kinetic| Kinetic {
-            friction: Coulomb { mu: case.material.friction.mu() },
+            friction: Coulomb { mu: case.material().friction.mu() },
             ..published
         };
         let published = match case.scheme.name {
@@ -302,6 +326,9 @@ impl Scene {
             SchemeName::Verfahren3 => VERFAHREN_3,
             SchemeName::Verfahren4 => VERFAHREN_4,
             SchemeName::Verfahren5 => VERFAHREN_5,
+            SchemeName::FirstOrder | SchemeName::SecondOrder | SchemeName::Adaptive => {
+                unreachable!("Case::check refuses schemes of another model")
+            }
         };
         work.visit(Simulation::new(kinetic(published), grid, EULER, step, ground, state))
     }

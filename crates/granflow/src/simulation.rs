@@ -338,15 +338,17 @@ impl<const D: usize, S: Scheme<D, f64>> Simulation<D, S> {
     pub fn supply(&self) -> f64 {
         self.supply
     }
-    /// max over cells of |change of each part of the state|/dt in the last step; infinite before the first.
+    /// max over cells of |change of each part of the state|/dt in the last step; infinite before the first, and after a
+    /// step that was cut to less than half: a change divided by a sliver is rounding.
     pub fn drift(&self) -> [f64; MOST_PARTS] {
+        let whole = self.last_dt > 0.0 && self.last_dt > 0.5 * self.wanted_step();
         let mut most = [0.0_f64; MOST_PARTS];
         for tally in &self.tallies {
             for (most, change) in most.iter_mut().zip(tally.change) {
                 *most = most.max(change);
             }
         }
-        most.map(|change| if self.last_dt > 0.0 { change / self.last_dt } else { f64::INFINITY })
+        most.map(|change| if whole { change / self.last_dt } else { f64::INFINITY })
     }
 
     /// Every cell rests by the scheme's own proof and the last step changed nothing: nothing ever will.
@@ -507,27 +509,35 @@ impl<const D: usize, S: Scheme<D, f64>> Simulation<D, S> {
         self.quiet.fill(false);
     }
 
-    /// Number the tiles that something can happen in, column by column, in runs of tiles above each other.
+    /// Number the tiles that something can happen in, in runs of tiles above each other. The runs of a band of rows follow
+    /// each other: they share pages of memory.
     fn wake(&mut self) {
         self.awake.clear();
         self.runs.clear();
         let (across, up) = (self.across, self.tiles.len() / self.across);
-        for x in 0..across {
-            let mut from = self.awake.len();
-            for y in 0..up {
-                let loud = (y.saturating_sub(1)..(y + 2).min(up))
-                    .any(|v| (x.saturating_sub(1)..(x + 2).min(across)).any(|u| !self.quiet[v * across + u]));
-                let awake = loud || self.wraps(x, y, across, up);
-                if awake {
-                    self.awake.push((y * across + x) as u32);
+        for band in (0..up).step_by(MOST_TILES) {
+            for x in 0..across {
+                let mut from = self.awake.len();
+                for y in band..up.min(band + MOST_TILES) {
+                    if self.stirs(x, y, across, up) {
+                        self.awake.push((y * across + x) as u32);
+                    } else if from < self.awake.len() {
+                        self.runs.push(from..self.awake.len());
+                        from = self.awake.len();
+                    }
                 }
-                let count = self.awake.len() - from;
-                if count > 0 && (!awake || y + 1 == up || count == MOST_TILES) {
-                    self.runs.push(from..from + count);
-                    from += count;
+                if from < self.awake.len() {
+                    self.runs.push(from..self.awake.len());
                 }
             }
         }
+    }
+
+    /// Can something happen in a tile?
+    fn stirs(&self, x: usize, y: usize, across: usize, up: usize) -> bool {
+        (y.saturating_sub(1)..(y + 2).min(up))
+            .any(|v| (x.saturating_sub(1)..(x + 2).min(across)).any(|u| !self.quiet[v * across + u]))
+            || self.wraps(x, y, across, up)
     }
 
     /// Tiles at a periodic end never sleep: their neighbours are at the other end.

@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use granflow::output::figures::{
     Axis, Colours, Convergence, Curve, ErrorSeries, Extent, Figure, FigureError, Fill, Frame, HeatMap,
-    History, HistoryPanel, Map, Outline, Overlay, Profiles, Section, Style, Surface,
+    History, HistoryPanel, Map, Outline, Overlay, Paint, Profiles, Section, Style, Surface,
 };
 
 /// A decoded PNG.
@@ -103,6 +103,7 @@ fn profiles_show_their_curves_and_fills() {
             upper: &end,
             colour: [201, 178, 140],
         }],
+        ..Default::default()
     };
     let png = drawn("profiles", &figure);
     assert_eq!((png.width, png.height), (1600, 1000));
@@ -368,6 +369,70 @@ fn convergence_shows_orders() {
     };
     let png = drawn("convergence", &figure);
     assert!(png.count([0, 114, 178]) > 1000 && png.count([213, 94, 0]) > 1000);
+}
+
+#[test]
+fn errors_against_iterations_run_over_decades() {
+    let steps: Vec<f64> = (0..3000).map(f64::from).collect();
+    let falls = |rate: f64, floor: f64| -> Vec<f64> {
+        steps.iter().map(|n| 0.3 * (-rate * n).exp() + floor).collect()
+    };
+    let (first, second) = (falls(0.01, 0.0), falls(0.02, 3e-4));
+    let figure = Profiles {
+        title: "Error against iterations",
+        subtitle: "Δx = 0.02, λ = 0.45",
+        x: Axis::new("iterations", ""),
+        y: Axis::new("sup norm of u − ū", "").over(1e-9, 1.0),
+        curves: &[
+            Curve { name: "first order", x: &steps, y: &first, ..Default::default() },
+            Curve { name: "second order", x: &steps, y: &second, style: Style::Dashed, ..Default::default() },
+        ],
+        logarithmic: [true, true],
+        ..Default::default()
+    };
+    let png = drawn("iterations", &figure);
+    assert!(png.count([0, 114, 178]) > 1000 && png.count([213, 94, 0]) > 500);
+    let half = Profiles { logarithmic: [false, true], y: Axis::new("error", ""), ..figure };
+    assert_ne!(half.draw().unwrap().rgb, png.rgb);
+    let none = Curve { x: &[0.0, -1.0], y: &[1.0, 2.0], ..Default::default() };
+    assert!(matches!(Profiles { curves: &[none], ..figure }.draw(), Err(FigureError::Empty { .. })));
+}
+
+/// A cone in a box, open at one side, with a shaft in the middle: the colour lies in the cells, which leave the hole.
+#[test]
+fn a_surface_is_painted_by_another_field_and_walled_in() {
+    let nodes: Vec<f64> = (0..=30).map(|i| f64::from(i) / 30.0).collect();
+    let cone = |x: f64, y: f64| 0.8 * (x - 0.5).hypot(y - 0.5);
+    let heights: Vec<f64> = nodes.iter().flat_map(|&y| nodes.iter().map(move |&x| cone(x, y))).collect();
+    let centres = range(30, 0.0, 1.0);
+    let speed = |x: f64, y: f64| if cone(x, y) < 0.1 { f64::NAN } else { 1.0 - cone(x, y) };
+    let paint: Vec<f64> = centres.iter().flat_map(|&y| centres.iter().map(move |&x| speed(x, y))).collect();
+    let walls = [[[0.0, 0.0], [1.0, 0.0]], [[1.0, 0.0], [1.0, 1.0]], [[0.0, 1.0], [1.0, 1.0]]];
+    let figure = Surface {
+        title: "A silo empties",
+        x: Axis::new("x", "m"),
+        y: Axis::new("y", "m"),
+        z: Axis::new("height", "m").over(0.0, 0.65),
+        xs: &nodes,
+        ys: &nodes,
+        values: &heights,
+        paint: Some(Paint { values: &paint, quantity: Axis::new("rolling layer v", "m") }),
+        colours: Colours::Thickness,
+        facets: true,
+        walls: &walls,
+        elevation: Some(45.0),
+        ..Default::default()
+    };
+    let png = drawn("surface_painted", &figure);
+    assert!(png.colours() > 1000);
+    let count = |figure: &Surface| {
+        let rgb = figure.draw().unwrap().rgb;
+        rgb.as_chunks::<3>().0.iter().filter(|p| **p == [246; 3]).count()
+    };
+    let whole = Surface { paint: None, ..figure };
+    assert!(count(&figure) > count(&whole) + 2000, "the floor is seen through the shaft");
+    let wrong = Surface { paint: Some(Paint { values: &paint[1..], quantity: Axis::default() }), ..figure };
+    assert!(matches!(wrong.draw(), Err(FigureError::Shape { found: 899, .. })));
 }
 
 #[test]

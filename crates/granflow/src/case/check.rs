@@ -2,12 +2,14 @@
 
 use super::fault::CaseError;
 use super::grid::{Axis, Grid, Side};
-use super::material::{EarthPressure, Friction};
-use super::slope::Slope;
-use super::{Case, Quantity};
+use super::material::EarthPressure;
+use super::{Case, Initial, Model, Quantity};
 
 mod files;
 mod material;
+mod method;
+mod model;
+mod sandpile;
 
 pub(super) use files::missing;
 
@@ -17,13 +19,20 @@ impl Case {
     /// # Errors
     /// [`CaseError`] for the first thing that is wrong; its kind is `File` where a file cannot be read.
     pub fn check(&self) -> Result<(), CaseError> {
+        self.check_model()?;
         self.check_place()?;
         self.check_material()?;
         self.check_scheme()?;
         self.check_time()?;
         self.check_output()?;
-        self.check_initial()?;
-        self.check_terrain()
+        self.check_initial_files()?;
+        match self.model {
+            Model::SavageHutter => {
+                self.check_initial()?;
+                self.check_terrain()
+            }
+            Model::HadelerKuttler => self.check_sandpile(),
+        }
     }
 
     /// What is allowed but may surprise, one sentence each.
@@ -37,8 +46,11 @@ impl Case {
                 name.as_str()
             ));
         }
-        if self.time.end.is_none() && self.time.steps.is_none() {
+        if self.time.end.is_none() && self.time.steps.is_none() && self.time.method.is_none() {
             notes.push("the run has no time limit; time.end sets one".to_owned());
+        }
+        if self.model == Model::HadelerKuttler {
+            notes.extend(self.sandpile_notes());
         }
         notes
     }
@@ -78,11 +90,19 @@ impl Case {
                 fault("terrain", "the case has both [grid] and [terrain]", "keep one of them")
             }
             (Some(grid), None) => {
-                if self.initial.is_none() {
+                let thickness = self.initial.as_ref().is_some_and(|initial| initial.thickness.is_some());
+                if self.model == Model::SavageHutter && self.initial.is_none() {
                     return fault(
                         "initial",
                         "a case with [grid] needs an [initial] thickness",
                         "add for instance initial.thickness = 1.0",
+                    );
+                }
+                if self.model == Model::SavageHutter && !thickness {
+                    return fault(
+                        "initial.thickness",
+                        "the key `thickness` is missing",
+                        "add thickness = ... to initial",
                     );
                 }
                 if !self.release.is_empty() {
@@ -109,10 +129,11 @@ impl Case {
                         "add [[release]] with polygons, raster or cap",
                     );
                 }
+                let material = self.material();
                 for (key, given) in [
-                    ("epsilon", self.material.epsilon.is_some()),
-                    ("slope", self.material.slope.is_some()),
-                    ("eta", self.material.eta.is_some()),
+                    ("epsilon", material.epsilon.is_some()),
+                    ("slope", material.slope.is_some()),
+                    ("eta", material.eta.is_some()),
                 ] {
                     if given {
                         let message = format!(
@@ -121,7 +142,7 @@ impl Case {
                         return fault(&format!("material.{key}"), &message, "remove it");
                     }
                 }
-                if self.material.earth_pressure != EarthPressure::Isotropic {
+                if material.earth_pressure != EarthPressure::Isotropic {
                     return fault(
                         "material.earth_pressure",
                         "on terrain the earth pressure is isotropic in this version",
@@ -181,105 +202,11 @@ impl Case {
         Ok(())
     }
 
-    fn check_scheme(&self) -> Result<(), CaseError> {
-        let scheme = &self.scheme;
-        if scheme.step.is_some() && scheme.courant.is_some() {
-            return Err(self.fault(
-                "scheme.courant",
-                "both `step` and `courant` are given",
-                "keep step for a fixed step, courant for an adaptive one",
-            ));
-        }
-        self.positive("scheme.step", scheme.step)?;
-        self.not_negative("scheme.film", scheme.film)?;
-        if let Some(courant) = scheme.courant {
-            let limit = scheme.name.courant_limit();
-            let allowed = format!("a number > 0 and <= {limit} for {}", scheme.name.as_str());
-            self.number("scheme.courant", courant, |v| v > 0.0 && v <= limit, &allowed)?;
-        }
-        if scheme.name.verfahren().is_none() {
-            return Ok(());
-        }
-        let name = scheme.name.as_str();
-        let refuse = |key: &str, what: &str| {
-            Err(self.fault(key, format!("{name} {what}"), "use the scheme balanced or balanced_2, which can"))
-        };
-        if self.terrain.is_some() {
-            return refuse("scheme.name", "works on a [grid] only, not on terrain");
-        }
-        if !matches!(self.material.friction, Friction::Coulomb(_)) {
-            return refuse(
-                &format!("material.friction.{}", self.material.friction.name()),
-                "knows Coulomb friction only",
-            );
-        }
-        if matches!(self.material.slope, Some(Slope::Profile(_))) {
-            return refuse("material.slope", "works on a constant slope only");
-        }
-        Ok(())
-    }
-
-    fn check_time(&self) -> Result<(), CaseError> {
-        let time = &self.time;
-        if time.steps.is_none() && time.end.is_none() && time.until.is_none() && time.stop.is_none() {
-            return Err(self.fault(
-                "time",
-                "nothing ends the run",
-                "add steps = 1000, end = 10.0, until = \"rest\" or stop.kinetic_energy = 0.01",
-            ));
-        }
-        if time.steps == Some(0) {
-            return Err(self.source.fault("time.steps", "found 0, expected a whole number > 0"));
-        }
-        self.positive("time.end", time.end)?;
-        self.positive("time.rest_speed", time.rest_speed)?;
-        if let Some(stop) = &time.stop {
-            self.number(
-                "time.stop.kinetic_energy",
-                stop.kinetic_energy,
-                |v| v > 0.0 && v < 1.0,
-                "a share of the peak, between 0 and 1",
-            )?;
-        }
-        if time.rest_speed.is_some() && time.until.is_none() {
-            return Err(self.fault(
-                "time.rest_speed",
-                "`rest_speed` has no meaning without until = \"rest\"",
-                "add until = \"rest\" or remove rest_speed",
-            ));
-        }
-        if time.until.is_some() && self.scheme.name.verfahren().is_some() && time.rest_speed.is_none() {
-            let message = format!(
-                "{} never reaches speed 0, so until = \"rest\" would never end",
-                self.scheme.name.as_str()
-            );
-            return Err(self.fault(
-                "time.until",
-                message,
-                "add rest_speed = 1e-12, or use the scheme balanced, which stops exactly",
-            ));
-        }
-        Ok(())
-    }
-
-    fn check_output(&self) -> Result<(), CaseError> {
-        let output = &self.output;
-        if output.every.is_some() && output.steps.is_some() {
-            return Err(self.fault("output.steps", "both `every` and `steps` are given", "keep one of them"));
-        }
-        self.positive("output.every", output.every)?;
-        if output.steps == Some(0) {
-            return Err(self.source.fault("output.steps", "found 0, expected a whole number > 0"));
-        }
-        for (index, kind) in output.files.iter().flatten().enumerate() {
-            let key = format!("output.files[{index}]");
-            if kind.needs_terrain() && self.terrain.is_none() {
-                return Err(self.fault(
-                    &key,
-                    format!("`{}` needs [terrain]", kind.as_str()),
-                    "on a grid: netcdf, csv, vtk, figures, animation",
-                ));
-            }
+    /// The files that [initial] names.
+    fn check_initial_files(&self) -> Result<(), CaseError> {
+        for (name, quantity) in self.initial.iter().flat_map(Initial::quantities) {
+            let Some(path) = quantity.and_then(Quantity::needs_file) else { continue };
+            self.check_file(&format!("initial.{name}.file"), path)?;
         }
         Ok(())
     }
@@ -292,11 +219,6 @@ impl Case {
                 "the grid has no y",
                 "remove velocity_y, or add grid.y",
             ));
-        }
-        let all = [Some(&initial.thickness), initial.velocity_x.as_ref(), initial.velocity_y.as_ref()];
-        for (name, quantity) in ["thickness", "velocity_x", "velocity_y"].into_iter().zip(all) {
-            let Some(path) = quantity.and_then(Quantity::needs_file) else { continue };
-            self.check_file(&format!("initial.{name}.file"), path)?;
         }
         self.initial_state().map(|_| ())
     }

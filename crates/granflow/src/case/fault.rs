@@ -3,6 +3,8 @@
 use std::fmt;
 use std::ops::Range;
 
+use super::formula::FormulaError;
+
 /// What kind of trouble a [`CaseError`] is; it decides the exit status.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum CaseErrorKind {
@@ -149,6 +151,33 @@ impl fmt::Display for CaseError {
 }
 
 impl std::error::Error for CaseError {}
+
+/// What is wrong with a part of a case that does not know where it stands: the key below it (with the bytes of a
+/// formula), the message, and whether a file is to blame.
+#[derive(Debug)]
+pub(super) struct PartFault {
+    pub key: &'static str,
+    pub part: Option<Range<usize>>,
+    pub message: String,
+    pub file: bool,
+}
+
+impl PartFault {
+    pub(super) fn new(key: &'static str, message: impl Into<String>) -> Self {
+        Self { key, part: None, message: message.into(), file: false }
+    }
+
+    /// A formula that cannot be read.
+    pub(super) fn formula(key: &'static str, error: FormulaError) -> Self {
+        let FormulaError { message, at, length } = error;
+        Self { key, part: Some(at..at + length), message, file: false }
+    }
+
+    /// Blames a file.
+    pub(super) fn file(self) -> Self {
+        Self { file: true, ..self }
+    }
+}
 
 /// The name that is most like `found`, if one is like it at all.
 pub fn nearest<'a>(found: &str, known: impl IntoIterator<Item = &'a str>) -> Option<&'a str> {

@@ -97,6 +97,12 @@ impl Formula {
         Ok(Self { root })
     }
 
+    /// Whether the variable of this number occurs.
+    #[must_use]
+    pub fn uses(&self, variable: usize) -> bool {
+        self.root.uses(variable)
+    }
+
     /// The value at the given variables, in the order they were named.
     #[must_use]
     pub fn at(&self, values: &[f64]) -> f64 {
@@ -112,6 +118,16 @@ impl Node {
             Self::Unary(apply, inner) => apply(inner.value(values)),
             Self::Binary(apply, pair) => apply(pair[0].value(values), pair[1].value(values)),
             Self::Choice(parts) => parts[if parts[0].value(values) != 0.0 { 1 } else { 2 }].value(values),
+        }
+    }
+
+    fn uses(&self, variable: usize) -> bool {
+        match self {
+            Self::Number(_) => false,
+            Self::Variable(index) => *index == variable,
+            Self::Unary(_, inner) => inner.uses(variable),
+            Self::Binary(_, pair) => pair.iter().any(|part| part.uses(variable)),
+            Self::Choice(parts) => parts.iter().any(|part| part.uses(variable)),
         }
     }
 }

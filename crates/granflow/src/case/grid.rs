@@ -12,9 +12,10 @@ pub struct Grid {
     /// The cells along y, across the chute; without it the case is one-dimensional.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub y: Option<Axis>,
-    /// What happens at the edges: one word for all, or { x = ..., y = ... } with a word or a pair [low, high] each.
-    #[serde(default)]
-    pub boundary: Boundary,
+    /// What happens at the edges: one word for all, or { x = ..., y = ... } with a word or a pair [low, high] each (default
+    /// "open"); hadeler_kuttler has table.open instead.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub boundary: Option<Boundary>,
 }
 
 impl Grid {
@@ -24,12 +25,25 @@ impl Grid {
         [self.x.cells, self.y.as_ref().map_or(1, |y| y.cells)]
     }
 
+    /// The centres of the cells.
+    #[must_use]
+    pub fn centres(&self) -> Points {
+        Points { x: self.x.centres(), y: self.y.as_ref().map(Axis::centres) }
+    }
+
+    /// The corners of the cells, one more along each axis than there are cells.
+    #[must_use]
+    pub fn nodes(&self) -> Points {
+        Points { x: self.x.faces(), y: self.y.as_ref().map(Axis::faces) }
+    }
+
     /// What happens at the low and the high edge along x and along y.
     #[must_use]
     pub fn sides(&self) -> [[Side; 2]; 2] {
         match &self.boundary {
-            Boundary::Uniform(side) => [[*side; 2]; 2],
-            Boundary::Axes(axes) => [axes.x.sides(), axes.y.sides()],
+            None => [[Side::Open; 2]; 2],
+            Some(Boundary::Uniform(side)) => [[*side; 2]; 2],
+            Some(Boundary::Axes(axes)) => [axes.x.sides(), axes.y.sides()],
         }
     }
 }
@@ -75,6 +89,53 @@ impl Axis {
     #[must_use]
     pub fn centres(&self) -> Vec<f64> {
         (0..self.cells).map(|index| self.centre(index)).collect()
+    }
+
+    /// All faces, one more than there are cells.
+    #[must_use]
+    pub fn faces(&self) -> Vec<f64> {
+        (0..=self.cells).map(|index| self.face(index)).collect()
+    }
+}
+
+/// The points where a quantity has values: every x with every y, x fastest.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Points {
+    /// Places along x.
+    pub x: Vec<f64>,
+    /// Places along y; none in one dimension, where y = 0.
+    pub y: Option<Vec<f64>>,
+}
+
+impl Points {
+    /// Number of points along x and along y (1 in one dimension).
+    #[must_use]
+    pub fn counts(&self) -> [usize; 2] {
+        [self.x.len(), self.y.as_ref().map_or(1, Vec::len)]
+    }
+
+    /// Point number `index`.
+    #[must_use]
+    pub fn at(&self, index: usize) -> [f64; 2] {
+        let y = self.y.as_ref().map_or(0.0, |y| y[index / self.x.len()]);
+        [self.x[index % self.x.len()], y]
+    }
+
+    /// All points in their order.
+    pub fn iter(&self) -> impl Iterator<Item = [f64; 2]> {
+        let [nx, ny] = self.counts();
+        (0..nx * ny).map(|index| self.at(index))
+    }
+
+    /// Point number `index` in words.
+    #[must_use]
+    pub fn place(&self, index: usize) -> String {
+        self.words(self.at(index))
+    }
+
+    /// A place in words, as long as it has coordinates.
+    pub(super) fn words(&self, [x, y]: [f64; 2]) -> String {
+        if self.y.is_some() { format!("x = {x}, y = {y}") } else { format!("x = {x}") }
     }
 }
 

@@ -1,4 +1,4 @@
-//! `[initial]`: thickness and velocity at the start, on a grid.
+//! `[initial]`: the state at the start, on a grid, and the shapes a quantity may have.
 
 use std::path::{Path, PathBuf};
 
@@ -7,21 +7,43 @@ use serde::{Deserialize, Deserializer, Serialize};
 
 use super::array::read_array;
 use super::choice::{Plain, plain_or_table};
-use super::formula::{Formula, FormulaError};
-use super::grid::Grid;
+use super::fault::PartFault;
+use super::formula::Formula;
+use super::grid::Points;
 
-/// The state at time 0, given at the centres of the cells.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+/// The state at time 0: thickness and velocity at the centres of the cells for savage_hutter, the two layers for
+/// hadeler_kuttler.
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Initial {
-    /// Thickness h, not negative.
-    pub thickness: Quantity,
+    /// Thickness h, not negative; savage_hutter needs it.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub thickness: Option<Quantity>,
     /// Velocity along x (default 0).
     #[serde(skip_serializing_if = "Option::is_none")]
     pub velocity_x: Option<Quantity>,
     /// Velocity along y (default 0).
     #[serde(skip_serializing_if = "Option::is_none")]
     pub velocity_y: Option<Quantity>,
+    /// Standing layer u at the corners of the cells, not negative; hadeler_kuttler (default 0).
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub standing_layer: Option<Quantity>,
+    /// Rolling layer v at the centres of the cells, not negative; hadeler_kuttler (default 0).
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub rolling_layer: Option<Quantity>,
+}
+
+impl Initial {
+    /// Every quantity with its key.
+    pub(super) fn quantities(&self) -> [(&'static str, Option<&Quantity>); 5] {
+        [
+            ("thickness", self.thickness.as_ref()),
+            ("velocity_x", self.velocity_x.as_ref()),
+            ("velocity_y", self.velocity_y.as_ref()),
+            ("standing_layer", self.standing_layer.as_ref()),
+            ("rolling_layer", self.rolling_layer.as_ref()),
+        ]
+    }
 }
 
 /// A quantity over the grid: a number, or one of the shapes.
@@ -48,7 +70,8 @@ pub enum Shape {
     Cone(Cone),
     /// A formula in x and y, for instance "max(1 - x^2, 0)".
     Formula(String),
-    /// A file with one number a cell: .npy with shape (cells) or (cells of y, cells of x), or .csv with one row for each y.
+    /// A file with one number a cell (a node for what is given at nodes): .npy with shape (cells) or (cells of y, cells of
+    /// x), or .csv with one row for each y.
     File(PathBuf),
 }
 
@@ -122,7 +145,7 @@ impl Default for Centre {
 
 impl Centre {
     /// Distance of (x, y) from the centre.
-    fn distance(self, x: f64, y: f64) -> f64 {
+    pub(super) fn distance(self, x: f64, y: f64) -> f64 {
         match self {
             // in one dimension y is 0 and the root of a square is exact
             Self::X(cx) => (x - cx).hypot(y),
@@ -144,28 +167,14 @@ impl<'de> Deserialize<'de> for Quantity {
     }
 }
 
-/// What is wrong with a quantity: the key below it (with the bytes of a formula), the message, and whether a file is to blame.
-pub(super) struct QuantityFault {
-    pub key: &'static str,
-    pub part: Option<std::ops::Range<usize>>,
-    pub message: String,
-    pub file: bool,
-}
-
-impl QuantityFault {
-    fn new(key: &'static str, message: String) -> Self {
-        Self { key, part: None, message, file: false }
-    }
-}
-
 impl Quantity {
     /// What can be said about the numbers without evaluating anything.
-    pub(super) fn verify(&self) -> Result<(), QuantityFault> {
+    pub(super) fn verify(&self) -> Result<(), PartFault> {
         let positive = |key, value: f64| {
             if value > 0.0 {
                 Ok(())
             } else {
-                Err(QuantityFault::new(key, format!("found {value}, expected a number > 0")))
+                Err(PartFault::new(key, format!("found {value}, expected a number > 0")))
             }
         };
         match self {
@@ -173,12 +182,12 @@ impl Quantity {
                 if values.len() != at.len() + 1 {
                     let message =
                         format!("{} values for {} jumps, expected {}", values.len(), at.len(), at.len() + 1);
-                    return Err(QuantityFault::new("steps.values", message));
+                    return Err(PartFault::new("steps.values", message));
                 }
                 match at.windows(2).find(|pair| pair[0] >= pair[1]) {
                     Some(pair) => {
                         let message = format!("{} comes after {}; the jumps must grow", pair[1], pair[0]);
-                        Err(QuantityFault::new("steps.at", message))
+                        Err(PartFault::new("steps.at", message))
                     }
                     None => Ok(()),
                 }
@@ -191,17 +200,13 @@ impl Quantity {
         }
     }
 
-    /// The values at the centres of all cells, x fastest; a file is looked for in `folder`.
-    pub(super) fn on(&self, grid: &Grid, folder: &Path) -> Result<Vec<f64>, QuantityFault> {
+    /// The values at all points; a file is looked for in `folder`.
+    pub(super) fn on(&self, points: &Points, folder: &Path) -> Result<Vec<f64>, PartFault> {
         self.verify()?;
-        let [nx, ny] = grid.cells();
-        let xs = grid.x.centres();
-        let ys = grid.y.as_ref().map_or_else(|| vec![0.0], super::grid::Axis::centres);
-        let fill = |value: &dyn Fn(f64, f64) -> f64| {
-            ys.iter().flat_map(|y| xs.iter().map(move |x| value(*x, *y))).collect::<Vec<f64>>()
-        };
+        let fill =
+            |value: &dyn Fn(f64, f64) -> f64| points.iter().map(|[x, y]| value(x, y)).collect::<Vec<f64>>();
         Ok(match self {
-            Self::Constant(value) => vec![*value; nx * ny],
+            Self::Constant(value) => fill(&|_, _| *value),
             Self::Shape(Shape::Steps(Steps { at, values })) => {
                 fill(&|x, _| values[at.partition_point(|jump| *jump < x)])
             }
@@ -218,8 +223,8 @@ impl Quantity {
                 let formula = compile(text)?;
                 fill(&|x, y| formula.at(&[x, y]))
             }
-            Self::Shape(Shape::File(path)) => read_array(&folder.join(path), [nx, ny])
-                .map_err(|message| QuantityFault { key: "file", part: None, message, file: true })?,
+            Self::Shape(Shape::File(path)) => read_array(&folder.join(path), points.counts())
+                .map_err(|message| PartFault::new("file", message).file())?,
         })
     }
 
@@ -232,11 +237,6 @@ impl Quantity {
     }
 }
 
-fn compile(text: &str) -> Result<Formula, QuantityFault> {
-    Formula::parse(text, &["x", "y"]).map_err(|FormulaError { message, at, length }| QuantityFault {
-        key: "formula",
-        part: Some(at..at + length),
-        message,
-        file: false,
-    })
+fn compile(text: &str) -> Result<Formula, PartFault> {
+    Formula::parse(text, &["x", "y"]).map_err(|error| PartFault::formula("formula", error))
 }

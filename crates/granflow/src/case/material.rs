@@ -32,6 +32,17 @@ pub struct Material {
     pub gravity: Option<f64>,
 }
 
+/// What a case without [material] has.
+pub(super) static NONE: Material = Material {
+    epsilon: None,
+    slope: None,
+    eta: None,
+    density: None,
+    friction: Friction::Coulomb(Coulomb { angle: None, mu: None }),
+    earth_pressure: EarthPressure::Isotropic,
+    gravity: None,
+};
+
 /// The earth-pressure coefficient k in beta = epsilon k cos(zeta).
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]

@@ -199,8 +199,7 @@ impl Source {
 
 fn cure_missing(field: &str, table: &str) -> String {
     match (table, field) {
-        ("", "material") => "add a table [material] with the friction law".to_owned(),
-        ("", "time") => "add a table [time] with steps, end, until = \"rest\" or stop.kinetic_energy".to_owned(),
+        ("", "time") => "add a table [time] with steps, end, until = \"rest\" (hadeler_kuttler: \"steady\") or stop.kinetic_energy".to_owned(),
         (_, "friction") => "say a law, for instance friction.coulomb = { angle = \"25 deg\" }; none is friction.coulomb = { mu = 0.0 }".to_owned(),
         ("", _) => format!("add {field} = ... to the case"),
         _ => format!("add {field} = ... to {table}"),

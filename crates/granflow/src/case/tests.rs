@@ -1,5 +1,7 @@
 use super::*;
 
+mod sandpile;
+
 const SILO: &str = r#"
 title = "A silo breaks"
 model = "savage_hutter"
@@ -37,7 +39,7 @@ fn the_silo() {
     assert_eq!(case.scheme.stepping(), Stepping::Fixed(0.001));
     assert_eq!((case.scheme.film(), case.gravity()), (0.0, 1.0));
     let tan = 18f64.to_radians().tan();
-    assert_eq!(case.material.pressure_coefficient(), 1.0 + 2.0 * tan * tan);
+    assert_eq!(case.material().pressure_coefficient(), 1.0 + 2.0 * tan * tan);
     let state = case.initial_state().unwrap();
     assert_eq!(state.thickness.iter().filter(|h| **h == 2.3).count(), 40);
     assert_eq!(

@@ -145,7 +145,7 @@ impl Kind for Varies<true> {
 
 /// What a cell offers to its faces and corners.
 #[derive(Clone, Copy, Debug)]
-pub struct Edges<const D: usize, R: Real, P> {
+pub struct Edges<const D: usize, R: Real, P = Linear<R>> {
     /// Rolling layer, along each axis.
     v: [P; D],
     /// Slope of the surface in the cell, along each axis.
@@ -183,7 +183,7 @@ fn constant<const D: usize, R: Real, P: Profile<R>>(
     offset: [isize; D],
 ) -> Edges<D, R, P> {
     let Cell { state, ground } = window.at(offset);
-    let Spacing { size, per } = window.spacing();
+    let Spacing { size, per, .. } = window.spacing();
     let half = R::of(0.5);
     let (mut edge, mut slope) = ([R::zero(); D], [R::zero(); D]);
     let here = surface(window, offset);
@@ -261,7 +261,8 @@ fn linear<const D: usize, R: Real, P: Profile<R>>(
 
 impl<const LIMITED: bool> HadelerKuttler<LIMITED> {
     /// E of a cell (eq. 37): what the first-order scheme would change in it and at its corners,
-    /// sum of |G| + h |rate of v|, h the smallest cell size.
+    /// sum of |G| + h |v_t|, h the smallest cell size; in two dimensions half the sum, which is the line's where nothing
+    /// varies across.
     #[inline(always)]
     fn residual<const D: usize, R: Real>(
         &self,
@@ -286,7 +287,7 @@ impl<const LIMITED: bool> HadelerKuttler<LIMITED> {
         let ground = window.at([0; D]).ground;
         let rate = rate_of_v(&ground, &faces, &corners, window.spacing());
         let [[a, b], [c, d]]: [[R; 2]; 2] = each!(y => each!(x => corners[y][x].abs()));
-        let corners = if D > 1 { (a + d) + (b + c) } else { a + b };
+        let corners = if D > 1 { ((a + d) + (b + c)) * R::of(0.5) } else { a + b };
         corners + rate.abs() * smallest
     }
 
@@ -297,13 +298,10 @@ impl<const LIMITED: bool> HadelerKuttler<LIMITED> {
         exponent: f64,
         window: &impl Window<D, R, Pile<R>, Ground<D, R>>,
     ) -> R {
-        let mut smallest = window.spacing().size[0];
-        unroll!(axis in D => {
-            smallest = smallest.min(window.spacing().size[axis]);
-        });
-        let residual = self.residual(window, smallest);
+        let smallest = window.spacing().smallest;
+        let residual = self.residual(window, R::of(smallest));
         let square = residual * residual;
-        square / (square + smallest.powf(exponent))
+        square / (square + R::of(smallest.powf(exponent)))
     }
 }
 
@@ -365,12 +363,14 @@ fn corner<const D: usize, R: Real, P: Profile<R>>(around: [[&Edges<D, R, P>; 2];
         unroll!(x in TWO => {
             let cell = around[y][x];
             let mut square = squares[0][x];
-            let mut v = if x == 0 { cell.v[0].hi() } else { cell.v[0].lo() };
+            // The axes are added first: they may be swapped without changing a bit.
+            let mut across = if x == 0 { cell.v[0].half() } else { -cell.v[0].half() };
             if D > 1 {
                 square = square + squares[1][y];
-                let across = cell.v[D - 1].half();
-                v = if y == 0 { v + across } else { v - across };
+                let half = cell.v[D - 1].half();
+                across = across + if y == 0 { half } else { -half };
             }
+            let v = cell.v[0].mid() + across;
             let loss = v * (square.sqrt() - one);
             most = R::select(cell.inside, most.max(loss), most);
         });

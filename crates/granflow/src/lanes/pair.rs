@@ -74,10 +74,6 @@ impl<L: Real> Real for Pair<L> {
     fn ln(self) -> Self {
         Pair(self.0.ln(), self.1.ln())
     }
-    #[inline(always)]
-    fn powf(self, exponent: f64) -> Self {
-        Pair(self.0.powf(exponent), self.1.powf(exponent))
-    }
 }
 
 impl<L: Wide> Wide for Pair<L> {

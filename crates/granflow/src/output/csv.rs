@@ -7,26 +7,32 @@ use super::{Error, whole_file};
 use std::fmt::Write as _;
 use std::path::Path;
 
-/// Writes `time,x,<field>,...` for every frame of the store; all fields lie on the same `x`. NaN stands as an empty cell.
+/// Writes `time,<axis>,<field>,...` for every frame of the store, with the fields that have a value for each place of the
+/// axis. NaN stands as an empty cell.
 ///
 /// # Errors
-/// [`Error::Invalid`] if a field has another length than `x`; [`Error::Io`].
-pub fn write(path: &Path, x: &[f64], frames: &mut Frames) -> Result<(), Error> {
-    if let Some(field) = frames.fields().iter().find(|field| field.length != x.len()) {
-        let problem = format!("field {} has {} values for {} places x", field.name, field.length, x.len());
-        return Err(Error::invalid(path, problem));
+/// [`Error::Invalid`] if no field has the length of the axis; [`Error::Io`].
+pub fn write(path: &Path, (axis, places): (&str, &[f64]), frames: &mut Frames) -> Result<(), Error> {
+    let all = 0..frames.fields().len();
+    let fields: Vec<usize> = all.filter(|&field| frames.fields()[field].length == places.len()).collect();
+    if fields.is_empty() {
+        return Err(Error::invalid(
+            path,
+            format!("no field has {} values, one for each {axis}", places.len()),
+        ));
     }
     whole_file(path, |out| {
-        let names: Vec<_> = frames.fields().iter().map(|field| field.name.as_str()).collect();
-        writeln!(out, "time,x,{}", names.join(","))?;
+        let names: Vec<_> = fields.iter().map(|&field| frames.fields()[field].name.as_str()).collect();
+        writeln!(out, "time,{axis},{}", names.join(","))?;
         let mut line = String::new();
         for frame in 0..frames.times().len() {
             let time = frames.times()[frame];
-            let columns: Vec<_> = (0..frames.fields().len())
-                .map(|field| frames.read(frame, field))
+            let columns: Vec<_> = fields
+                .iter()
+                .map(|&field| frames.read(frame, field))
                 .collect::<Result<_, _>>()
                 .map_err(std::io::Error::other)?;
-            for (row, x) in x.iter().enumerate() {
+            for (row, x) in places.iter().enumerate() {
                 line.clear();
                 let _ = write!(line, "{time:?},{x:?}"); // a String takes everything
                 for value in columns.iter().map(|column| column[row]) {
@@ -49,18 +55,22 @@ mod tests {
     #[test]
     fn one_line_per_instant_and_place() {
         let folder = tempfile::tempdir().unwrap();
-        let fields = ["thickness", "velocity_x"].map(|name| Field { name: name.into(), length: 2 });
+        let fields = [("thickness", 2), ("velocity_x", 2), ("elsewhere", 1)];
+        let fields = fields.map(|(name, length)| Field { name: name.into(), length });
         let mut frames =
             Frames::create(&folder.path().join("frames"), Precision::F64, fields.into()).unwrap();
-        frames.append(0.0, &[&[1.0, 0.1 + 0.2], &[0.0, f64::NAN]]).unwrap();
-        frames.append(0.5, &[&[1e-7, 2.0], &[-0.5, 3.0]]).unwrap();
+        frames.append(0.0, &[&[1.0, 0.1 + 0.2], &[0.0, f64::NAN], &[9.0]]).unwrap();
+        frames.append(0.5, &[&[1e-7, 2.0], &[-0.5, 3.0], &[9.0]]).unwrap();
         let path = folder.path().join("profiles.csv");
-        write(&path, &[-1.0, 1.0], &mut frames).unwrap();
+        write(&path, ("x", &[-1.0, 1.0]), &mut frames).unwrap();
         assert_eq!(
             std::fs::read_to_string(&path).unwrap(),
             "time,x,thickness,velocity_x\n0.0,-1.0,1.0,0.0\n0.0,1.0,0.30000000000000004,\n\
              0.5,-1.0,1e-7,-0.5\n0.5,1.0,2.0,3.0\n"
         );
-        assert!(write(&path, &[0.0], &mut frames).is_err());
+        assert!(write(&path, ("x", &[0.0; 3]), &mut frames).is_err());
+        write(&path, ("x_node", &[7.0]), &mut frames).unwrap();
+        let text = std::fs::read_to_string(&path).unwrap();
+        assert_eq!(text, "time,x_node,elsewhere\n0.0,7.0,9.0\n0.5,7.0,9.0\n");
     }
 }

@@ -32,6 +32,7 @@ mod history;
 mod lattice;
 mod legend;
 mod map;
+mod perspective;
 mod relief;
 mod scale_bar;
 mod section;
@@ -46,12 +47,12 @@ pub use axes::Axis;
 pub use colours::{Colours, Rgb, line_colour};
 pub use convergence::{Convergence, ErrorSeries};
 pub use curves::{Curve, Fill, Profiles, Style};
-pub use heat::{Frame, HeatMap, Outline};
+pub use heat::{Frame, HeatMap, Levels, Outline};
 pub use history::{History, HistoryPanel};
 pub use map::{Extent, Map, Overlay};
 pub use section::Section;
-pub use surface::Surface;
-pub use ticks::short;
+pub use surface::{Paint, Surface};
+pub use ticks::{round_length, short};
 
 /// Why a figure could not be drawn or written.
 #[derive(Debug, thiserror::Error)]

@@ -6,7 +6,7 @@ use std::fs::{self, OpenOptions};
 use std::io::Write;
 use std::path::{Path, PathBuf};
 
-/// The columns of the file, in order.
+/// The columns of the file, in order; `mass_out_nodata` is `mass_out_hole` where a sandpile grows on a table.
 pub const COLUMNS: [&str; 15] = [
     "time",
     "step",
@@ -25,6 +25,36 @@ pub const COLUMNS: [&str; 15] = [
     "kinetic_energy",
 ];
 
+/// The columns `mass_out_left`, ... among [`COLUMNS`].
+const EXITS: std::ops::Range<usize> = 5..10;
+
+/// The header with these names for what lies behind the five exits.
+fn header(exits: [&str; 5]) -> String {
+    let named = exits.map(|exit| format!("mass_out_{exit}"));
+    let named = named.iter().map(String::as_str);
+    let columns: Vec<&str> = COLUMNS[..EXITS.start]
+        .iter()
+        .copied()
+        .chain(named)
+        .chain(COLUMNS[EXITS.end..].iter().copied())
+        .collect();
+    columns.join(",")
+}
+
+/// Is it a header, whatever its exits are called?
+fn is_header(line: &str) -> bool {
+    let columns: Vec<&str> = line.split(',').collect();
+    let fits = |(k, column): (usize, &&str)| {
+        if EXITS.contains(&k) { column.starts_with("mass_out_") } else { *column == COLUMNS[k] }
+    };
+    columns.len() == COLUMNS.len() && columns.iter().enumerate().all(fits)
+}
+
+/// A number of the file; NaN, what does not apply, is an empty cell.
+fn cell(value: f64) -> String {
+    if value.is_nan() { String::new() } else { format!("{value:?}") }
+}
+
 /// One line of the ledger; masses are totals since the start, in the case's units (m³ on terrain).
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Entry {
@@ -36,17 +66,17 @@ pub struct Entry {
     pub mass: f64,
     /// Mass that was released or poured on.
     pub mass_in: f64,
-    /// What left over the sides and into nodata: left, right, bottom, top, nodata.
+    /// What left over the sides and inside them: left, right, bottom, top, and into nodata or the holes of a table.
     pub out: [f64; 5],
     /// (mass - `mass_in` + mass out - mass at the start) / (mass at the start + `mass_in`).
     pub mass_error: f64,
-    /// Cells that hold mass above a film.
+    /// Cells that hold mass above a film; on a table those with sand.
     pub wet_cells: u64,
-    /// Cells that move.
+    /// Cells that move; on a table those with a rolling layer.
     pub moving_cells: u64,
-    /// Largest speed.
+    /// Largest speed; NaN on a table.
     pub max_speed: f64,
-    /// Kinetic energy per density.
+    /// Kinetic energy per density; NaN on a table.
     pub kinetic_energy: f64,
 }
 
@@ -58,19 +88,17 @@ impl Entry {
     }
 
     fn line(&self) -> String {
-        let [left, right, bottom, top, nodata] = self.out;
+        let numbers = |values: &[f64]| values.iter().map(|&v| cell(v)).collect::<Vec<_>>().join(",");
         format!(
-            "{:?},{},{:?},{:?},{:?},{left:?},{right:?},{bottom:?},{top:?},{nodata:?},{:?},{},{},{:?},{:?}\n",
-            self.time,
+            "{},{},{},{},{},{},{},{}\n",
+            cell(self.time),
             self.step,
-            self.mass,
-            self.mass_in,
-            self.mass_out(),
-            self.mass_error,
+            numbers(&[self.mass, self.mass_in, self.mass_out()]),
+            numbers(&self.out),
+            cell(self.mass_error),
             self.wet_cells,
             self.moving_cells,
-            self.max_speed,
-            self.kinetic_energy,
+            numbers(&[self.max_speed, self.kinetic_energy]),
         )
     }
 
@@ -79,7 +107,10 @@ impl Entry {
         if cells.len() != COLUMNS.len() {
             return None;
         }
-        let number = |column: usize| cells[column].parse::<f64>().ok();
+        let number = |column: usize| match cells[column] {
+            "" => Some(f64::NAN),
+            cell => cell.parse::<f64>().ok(),
+        };
         let count = |column: usize| cells[column].parse::<u64>().ok();
         Some(Self {
             time: number(0)?,
@@ -100,16 +131,17 @@ impl Entry {
 #[derive(Debug)]
 pub struct Ledger {
     path: PathBuf,
+    header: String,
     entries: Vec<Entry>,
 }
 
 impl Ledger {
-    /// Starts a ledger with no lines at `path`, over an older one.
+    /// Starts a ledger with no lines at `path`, over an older one; `exits` names what [`Entry::out`] counts.
     ///
     /// # Errors
     /// [`Error::Io`] if the file cannot be written.
-    pub fn create(path: &Path) -> Result<Self, Error> {
-        let ledger = Self { path: path.to_owned(), entries: Vec::new() };
+    pub fn create(path: &Path, exits: [&str; 5]) -> Result<Self, Error> {
+        let ledger = Self { path: path.to_owned(), header: header(exits), entries: Vec::new() };
         ledger.rewrite()?;
         Ok(ledger)
     }
@@ -121,7 +153,8 @@ impl Ledger {
     pub fn open(path: &Path) -> Result<Self, Error> {
         let text = fs::read_to_string(path).map_err(Error::io(path, "read"))?;
         let mut lines = text.split_inclusive('\n').enumerate();
-        if lines.next().map(|(_, line)| line.trim_end()) != Some(&COLUMNS.join(",")) {
+        let header = lines.next().map_or("", |(_, line)| line.trim_end());
+        if !is_header(header) {
             return Err(Error::damaged(path, format!("line 1 should be the header {}", COLUMNS.join(","))));
         }
         let mut entries = Vec::new();
@@ -134,7 +167,7 @@ impl Ledger {
                 })?),
             }
         }
-        let ledger = Self { path: path.to_owned(), entries };
+        let ledger = Self { path: path.to_owned(), header: header.to_owned(), entries };
         if torn {
             ledger.rewrite()?;
         }
@@ -176,7 +209,7 @@ impl Ledger {
 
     fn rewrite(&self) -> Result<(), Error> {
         whole_file(&self.path, |out| {
-            writeln!(out, "{}", COLUMNS.join(","))?;
+            writeln!(out, "{}", self.header)?;
             self.entries.iter().try_for_each(|entry| out.write_all(entry.line().as_bytes()))
         })
     }
@@ -196,6 +229,8 @@ pub fn sum(values: impl IntoIterator<Item = f64>) -> f64 {
 mod tests {
     use super::*;
 
+    const SIDES: [&str; 5] = ["left", "right", "bottom", "top", "nodata"];
+
     fn entry(step: u64) -> Entry {
         Entry {
             time: step as f64 / 3.0,
@@ -213,7 +248,7 @@ mod tests {
     fn lines_come_back_and_a_torn_one_is_dropped() {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("mass.csv");
-        let mut ledger = Ledger::create(&path).unwrap();
+        let mut ledger = Ledger::create(&path, SIDES).unwrap();
         (0..4).for_each(|step| ledger.append(entry(step)).unwrap());
         let read = Ledger::open(&path).unwrap();
         assert_eq!(format!("{:?}", read.entries()), format!("{:?}", ledger.entries()));
@@ -230,10 +265,26 @@ mod tests {
     fn truncating_goes_back_to_the_checkpoint() {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("mass.csv");
-        let mut ledger = Ledger::create(&path).unwrap();
+        let mut ledger = Ledger::create(&path, SIDES).unwrap();
         (0..4).for_each(|step| ledger.append(entry(step)).unwrap());
         assert_eq!(ledger.truncate_to(entry(1).time).unwrap(), 2);
         assert_eq!(Ledger::open(&path).unwrap().entries().last().unwrap().step, 1);
+    }
+
+    #[test]
+    fn the_books_of_a_table_name_its_hole_and_leave_out_the_speed() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("mass.csv");
+        let mut ledger = Ledger::create(&path, ["left", "right", "bottom", "top", "hole"]).unwrap();
+        let entry = Entry { out: [0.5; 5], max_speed: f64::NAN, kinetic_energy: f64::NAN, ..entry(1) };
+        ledger.append(entry).unwrap();
+        let text = fs::read_to_string(&path).unwrap();
+        assert!(text.lines().next().unwrap().contains("mass_out_top,mass_out_hole,mass_error"), "{text}");
+        assert!(text.ends_with(",12,0,,\n"), "{text}");
+        let read = Ledger::open(&path).unwrap();
+        assert_eq!((read.entries()[0].out[4], read.entries()[0].max_speed.is_nan()), (0.5, true));
+        assert_eq!(Ledger::open(&path).unwrap().truncate_to(f64::INFINITY).unwrap(), 0);
+        assert_eq!(fs::read_to_string(&path).unwrap(), text);
     }
 
     #[test]

@@ -53,7 +53,11 @@ impl Axis {
             name: name.into(),
             values,
             units: units.into(),
-            long_name: if projected { format!("{lower} coordinate of projection") } else { lower.clone() },
+            long_name: if projected {
+                format!("{lower} coordinate of projection")
+            } else {
+                name.replace('_', " ")
+            },
             standard_name: projected.then(|| format!("projection_{lower}_coordinate")),
             axis,
         }

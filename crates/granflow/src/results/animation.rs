@@ -1,10 +1,13 @@
-//! `animation.png`: the thickness over time as an animated PNG, which every browser shows.
+//! `animation.png`: the thickness, or the pile, over time as an animated PNG, which every browser shows.
 
 use super::chute_figures::Window;
 use super::mountain_figures::{Ground, top};
 use super::path::REACHED;
+use super::profiles::PILE;
 use super::story::Story;
-use super::{FilesError, Finished};
+use super::table_figures::{self, Ranges};
+use super::{FilesError, Finished, Under};
+use crate::output;
 use crate::output::figures::{
     Axis, Colours, Curve, Figure, FigureError, Fill, HeatMap, Map, Overlay, Picture, Profiles, Style, short,
 };
@@ -24,13 +27,25 @@ const STAY: u16 = 3;
 pub(super) fn write(run: &Finished, story: &Story) -> Result<PathBuf, FilesError> {
     let mut frames = Frames::open(run.frames.path())?.0;
     let times = frames.times().to_vec();
-    let field = frames.position("thickness").unwrap_or(0);
+    let names: &[&str] =
+        if run.plane.as_table().is_some() { &["standing_layer", "rolling_layer"] } else { &["thickness"] };
+    let wanted: Vec<usize> = names.iter().filter_map(|name| frames.position(name)).collect();
+    let mut read = |k: usize| -> Result<Vec<Vec<f64>>, output::Error> {
+        wanted.iter().map(|&field| frames.read(k, field)).collect()
+    };
     let every = times.len().div_ceil(PICTURES).max(1);
     let shown: Vec<usize> = (0..times.len()).filter(|k| k % every == 0 || k + 1 == times.len()).collect();
-    let scene = Scene::of(run, story);
+    let mut scene = Scene::of(run, story);
+    if let Some(table) = run.plane.as_table() {
+        let mut ranges = Ranges::default();
+        for &k in &shown {
+            ranges.widen(table, pair(&read(k)?));
+        }
+        scene.ranges = ranges;
+    }
     let path = run.directory.join("animation.png");
     let Some(&start) = shown.first() else { return Ok(path) };
-    let first = scene.draw(times[start], &frames.read(start, field)?)?;
+    let first = scene.draw(times[start], &read(start)?)?;
     let mut failure = None;
     let written = whole_file(&path, |out| {
         let mut encoder = png::Encoder::new(out, first.width, first.height);
@@ -44,10 +59,10 @@ pub(super) fn write(run: &Finished, story: &Story) -> Result<PathBuf, FilesError
         for group in shown.chunks(rayon::current_num_threads().max(1)) {
             let mut fields = Vec::new();
             for &k in group {
-                fields.push((times[k], frames.read(k, field).map_err(io::Error::other)?));
+                fields.push((times[k], read(k).map_err(io::Error::other)?));
             }
             let pictures: Result<Vec<Picture>, FigureError> =
-                fields.par_iter().map(|(time, field)| scene.draw(*time, field)).collect();
+                fields.par_iter().map(|(time, fields)| scene.draw(*time, fields)).collect();
             let pictures = match pictures {
                 Ok(pictures) => pictures,
                 Err(error) => {
@@ -80,25 +95,40 @@ struct Scene<'a> {
     window: Option<Window>,
     /// Greatest thickness that the colours or the axis tell apart.
     top: f64,
+    /// What they tell apart on a table.
+    ranges: Ranges,
+}
+
+/// Standing and rolling layer of a frame.
+fn pair(fields: &[Vec<f64>]) -> (&[f64], &[f64]) {
+    let field = |k: usize| fields.get(k).map_or(&[][..], Vec::as_slice);
+    (field(0), field(1))
 }
 
 impl<'a> Scene<'a> {
     fn of(run: &Finished, story: &'a Story) -> Scene<'a> {
         let peak = run.map("peak_thickness");
-        let all = || story.thickness.iter().flatten().copied();
+        let all = || story.series("thickness").iter().flatten().copied();
         let most = match peak {
             Some(peak) if story.plane.is_terrain() => top(peak.iter().copied().filter(|&h| h > REACHED)),
             Some(peak) => peak.iter().copied().fold(0.0, f64::max),
             None => all().fold(0.0, f64::max),
         };
-        let window = (!story.plane.y.is_empty() && !story.plane.is_terrain())
+        let chute = matches!(story.plane.under, Under::Chute);
+        let window = (!story.plane.y.is_empty() && chute)
             .then(|| Window::around(story, peak.unwrap_or(&story.plane.release)));
-        Scene { story, ground: Ground::of(story), window, top: if most > 0.0 { most } else { 1.0 } }
+        let top = if most > 0.0 { most } else { 1.0 };
+        Scene { story, ground: Ground::of(story), window, top, ranges: Ranges::default() }
     }
 
-    fn draw(&self, time: f64, field: &[f64]) -> Result<Picture, FigureError> {
+    fn draw(&self, time: f64, fields: &[Vec<f64>]) -> Result<Picture, FigureError> {
         let story = self.story;
         let subtitle = format!("t = {} {}", short(time), story.unit("s"));
+        if let Some(table) = story.plane.as_table() {
+            let draw = if story.plane.y.is_empty() { table_figures::instant } else { table_figures::pile };
+            return draw(story, table, &subtitle, pair(fields), self.ranges);
+        }
+        let (field, _) = pair(fields);
         let thickness = Axis::new("thickness h", story.unit("m")).over(0.0, self.top);
         if let Some(ground) = &self.ground {
             let overlay = Overlay {
@@ -140,7 +170,8 @@ impl<'a> Scene<'a> {
             x,
             y: Axis::new("thickness h", "").over(0.0, 1.08 * self.top),
             curves: &[Curve { name: "", x: xs, y: field, style: Style::Solid, colour: None }],
-            fills: &[Fill { name: "", x: xs, lower: None, upper: field, colour: [201, 178, 140] }],
+            fills: &[Fill { name: "", x: xs, lower: None, upper: field, colour: PILE }],
+            ..Default::default()
         }
         .draw()
     }

@@ -1,10 +1,9 @@
 //! The figures of a run on a chute: profiles and space-time in one dimension, the plane in two.
 
 use super::drawing::Drawing;
+use super::profiles::{self, Line};
 use super::story::Story;
-use crate::output::figures::{
-    Axis, Colours, Curve, Figure, Fill, Frame, HeatMap, Profiles, Style, Surface, short,
-};
+use crate::output::figures::{Axis, Colours, Figure, Frame, HeatMap, Surface, short};
 
 /// Shown part of a plane: cells whose peak thickness passes this share of the largest.
 const FOOTPRINT: f64 = 0.01;
@@ -14,41 +13,10 @@ const MARGIN: f64 = 0.1;
 /// Profiles and space-time of a one-dimensional run.
 pub(super) fn line(story: &Story) -> Vec<Drawing<'_>> {
     let x = &story.plane.x;
-    let profile = |name, caption: &str, label, series: &'_ [Vec<f64>], filled: bool| {
-        let series = series.to_vec();
-        Drawing::new(name, caption, move || {
-            let last = series.len().saturating_sub(1);
-            let mut shown = vec![0, last / 8, last / 3, last];
-            shown.dedup();
-            let names: Vec<String> =
-                shown.iter().map(|&k| format!("t = {}", short(story.times[k]))).collect();
-            let style = |place: usize| match place {
-                0 => (Style::Dashed, Some([110, 110, 110])),
-                place if place + 1 == shown.len() => (Style::Solid, Some([0, 114, 178])),
-                1 => (Style::Dotted, Some([213, 94, 0])),
-                _ => (Style::DashDot, Some([0, 158, 115])),
-            };
-            let curve = |(place, &k): (usize, &usize)| {
-                let (style, colour) = style(place);
-                Curve { name: &names[place], x, y: &series[k], style, colour }
-            };
-            let curves: Vec<Curve> = shown.iter().enumerate().map(curve).collect();
-            let fills: Vec<Fill> = (filled && !series.is_empty())
-                .then(|| Fill { name: "", x, lower: None, upper: &series[last], colour: [201, 178, 140] })
-                .into_iter()
-                .collect();
-            let largest = series.iter().flatten().fold(0.0_f64, |most, v| most.max(*v));
-            let y = Axis::new(label, "");
-            Profiles {
-                title: &story.title,
-                subtitle: &story.subtitle,
-                x: Axis::new("x", ""),
-                y: if filled && largest > 0.0 { y.over(0.0, 1.08 * largest) } else { y },
-                curves: &curves,
-                fills: &fills,
-            }
-            .draw()
-        })
+    let (thickness, velocity) = (story.series("thickness"), story.series("velocity_x"));
+    let profile = |name, caption: &str, label, series: &[Vec<f64>], filled: bool| {
+        let line = Line { x, series: series.to_vec(), filled, ground: &[], walls: Vec::new(), ends: None };
+        profiles::drawing(story, (name, caption), label, line)
     };
     let above = |name, caption: &str, label, series: &'_ [Vec<f64>], colours| {
         let values: Vec<f64> = series.concat();
@@ -64,12 +32,12 @@ pub(super) fn line(story: &Story) -> Vec<Drawing<'_>> {
                 values: &values,
                 quantity: Axis::new(label, ""),
                 colours,
-                outlines: &[],
+                ..Default::default()
             }
             .draw()
         })
     };
-    let signed = story.velocity.iter().flatten().any(|&u| u < 0.0);
+    let signed = velocity.iter().flatten().any(|&u| u < 0.0);
     let colours = if signed { Colours::Diverging } else { Colours::Viridis };
     let (h, u) = ("thickness h", "velocity u");
     let mut drawings = vec![
@@ -77,18 +45,12 @@ pub(super) fn line(story: &Story) -> Vec<Drawing<'_>> {
             "profile",
             "Thickness at the start, at two instants between, and at the end.",
             h,
-            &story.thickness,
+            thickness,
             true,
         ),
-        profile("velocity", "Velocity at the same instants.", u, &story.velocity, false),
-        above(
-            "space_time_thickness",
-            "Thickness over space and time.",
-            h,
-            &story.thickness,
-            Colours::Viridis,
-        ),
-        above("space_time_velocity", "Velocity over space and time.", u, &story.velocity, colours),
+        profile("velocity", "Velocity at the same instants.", u, velocity, false),
+        above("space_time_thickness", "Thickness over space and time.", h, thickness, Colours::Viridis),
+        above("space_time_velocity", "Velocity over space and time.", u, velocity, colours),
         Drawing::new("surface", "Thickness over space and time in perspective.", move || {
             Surface {
                 title: &story.title,
@@ -98,7 +60,7 @@ pub(super) fn line(story: &Story) -> Vec<Drawing<'_>> {
                 z: Axis::new(h, ""),
                 xs: x,
                 ys: &story.times,
-                values: &story.thickness.concat(),
+                values: &thickness.concat(),
                 ..Default::default()
             }
             .draw()
@@ -150,15 +112,16 @@ impl Window {
 
 /// The maps of a run on a plane.
 pub(super) fn plane(story: &Story) -> Vec<Drawing<'_>> {
-    let footprint = story.map("peak_thickness").or(story.thickness.first().map(Vec::as_slice)).unwrap_or(&[]);
+    let thickness = story.series("thickness");
+    let footprint = story.map("peak_thickness").or(thickness.first().map(Vec::as_slice)).unwrap_or(&[]);
     let mut drawings = Vec::new();
     if footprint.is_empty() {
         return drawings;
     }
     let window = std::sync::Arc::new(Window::around(story, footprint));
     let ends = [
-        ("thickness_start", story.thickness.first(), story.times.first()),
-        ("thickness_end", story.thickness.last(), story.times.last()),
+        ("thickness_start", thickness.first(), story.times.first()),
+        ("thickness_end", thickness.last(), story.times.last()),
     ];
     let mut maps: Vec<(&'static str, &str, String, &[f64])> = Vec::new();
     for (name, field, time) in ends {

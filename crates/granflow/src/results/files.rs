@@ -1,7 +1,9 @@
 //! All files that a case asks for, made of a finished run.
 
 use super::story::Story;
-use super::{Finished, animation, chute_figures, drawing, mountain_figures, outlines, rasters};
+use super::{
+    Finished, Under, animation, chute_figures, drawing, mountain_figures, outlines, rasters, table_figures,
+};
 use crate::case::FileKind;
 use crate::output::figures::FigureError;
 use crate::output::frames::Frames;
@@ -50,10 +52,12 @@ impl Story {
     /// # Errors
     /// [`FilesError`] naming the figure or the file.
     pub fn draw(&self, folder: &Path) -> Result<Vec<report::Figure>, FilesError> {
-        let drawings = match (self.plane.is_terrain(), self.plane.y.is_empty()) {
-            (true, _) => mountain_figures::mountain(self),
-            (false, true) => chute_figures::line(self),
-            (false, false) => chute_figures::plane(self),
+        let drawings = match (&self.plane.under, self.plane.y.is_empty()) {
+            (Under::Mountain(_), _) => mountain_figures::mountain(self),
+            (Under::Chute, true) => chute_figures::line(self),
+            (Under::Chute, false) => chute_figures::plane(self),
+            (Under::Table(table), true) => table_figures::line(self, table),
+            (Under::Table(table), false) => table_figures::plane(self, table),
         };
         Ok(drawing::save_all(&drawings, folder)?)
     }
@@ -84,7 +88,7 @@ impl Finished {
             written.extend(outlines::write(self)?);
         }
         if asked(FileKind::Csv) {
-            written.push(self.write_table()?);
+            written.extend(self.write_csv()?);
         }
         if asked(FileKind::Vtk) {
             written.extend(self.write_vtk()?);
@@ -98,35 +102,50 @@ impl Finished {
         Ok(written)
     }
 
-    /// `profiles.csv`: every instant of a line; `maps.csv`: the summary maps of a plane, a line per cell.
-    fn write_table(&self) -> Result<PathBuf, output::Error> {
-        let (x, y) = (&self.plane.x, &self.plane.y);
-        if y.is_empty() {
-            let path = self.directory.join("profiles.csv");
-            csv::write(&path, x, &mut Frames::open(self.frames.path())?.0)?;
-            return Ok(path);
-        }
-        let path = self.directory.join("maps.csv");
-        output::whole_file(&path, |out| {
-            let names: Vec<&str> = self.maps.iter().map(|(name, _)| *name).collect();
-            writeln!(out, "x,y,{}", names.join(","))?;
-            for k in 0..x.len() * y.len() {
-                write!(out, "{:?},{:?}", x[k % x.len()], y[k / x.len()])?;
-                for value in self.maps.iter().map(|(_, map)| map[k]) {
-                    if value.is_nan() { write!(out, ",")? } else { write!(out, ",{value:?}")? }
+    /// `profiles.csv`: every instant of a line; `maps.csv`: the summary maps of a plane, a line per cell. What lies on the
+    /// nodes of a table goes to `profiles_node.csv` and `maps_node.csv`.
+    fn write_csv(&self) -> Result<Vec<PathBuf>, output::Error> {
+        let mut frames = Frames::open(self.frames.path())?.0;
+        let mut written = Vec::new();
+        let mut places = vec![("", &self.plane.x, &self.plane.y)];
+        let (table, series) = (self.plane.as_table(), self.plane.series());
+        places.extend(table.map(|table| ("_node", &table.x_node, &table.y_node)));
+        for (at, x, y) in places {
+            let kind = if y.is_empty() { "profiles" } else { "maps" };
+            let path = self.directory.join(format!("{kind}{at}.csv"));
+            if y.is_empty() {
+                csv::write(&path, (&format!("x{at}"), x), &mut frames)?;
+            } else {
+                let mut maps: Vec<(&str, Vec<f64>)> = Vec::new();
+                if table.is_some() {
+                    // Of a pile that grows the last instant is the result; an avalanche has `deposit` among its maps.
+                    let last = frames.times().len().saturating_sub(1);
+                    for (k, field) in series.iter().enumerate().filter(|(_, f)| f.length == x.len() * y.len())
+                    {
+                        maps.push((&field.name, frames.read(last, k)?));
+                    }
                 }
-                writeln!(out)?;
+                maps.extend(self.fixed(x.len() * y.len()));
+                write_maps(&path, at, (x, y), &maps)?;
             }
-            Ok(())
-        })?;
-        Ok(path)
+            written.push(path);
+        }
+        Ok(written)
+    }
+
+    /// The maps that do not change, with so many values.
+    fn fixed(&self, length: usize) -> Vec<(&str, Vec<f64>)> {
+        let height = self.plane.as_table().map(|table| ("table_height", &table.height));
+        let maps = self.maps.iter().map(|(name, map)| (*name, map));
+        let all = height.into_iter().chain(maps);
+        all.filter(|(_, map)| map.len() == length).map(|(name, map)| (name, map.clone())).collect()
     }
 
     /// `result.pvd` and `vtk/frame_0000.vti`, ...
     fn write_vtk(&self) -> Result<Vec<PathBuf>, output::Error> {
         let mut frames = Frames::open(self.frames.path())?.0;
         let spacing = |c: &[f64]| c.get(1).map(|second| second - c[0]);
-        let (x, y) = (&self.plane.x, &self.plane.y);
+        let (x, y, table) = (&self.plane.x, &self.plane.y, self.plane.as_table());
         let dx = spacing(x).unwrap_or(1.0);
         let dy = spacing(y).unwrap_or(dx);
         let low = |c: &[f64], d: f64| c.first().map_or(0.0, |first| first - 0.5 * d);
@@ -141,6 +160,14 @@ impl Finished {
             let mut fields = Vec::new();
             for (field, name) in names.iter().enumerate() {
                 fields.push((name.as_str(), frames.read(k, field)?));
+            }
+            if let Some(table) = table {
+                fields.extend(self.fixed(table.nodes()));
+                fields.extend(self.fixed(x.len() * y.len().max(1)));
+                if y.is_empty() {
+                    let line = fields.iter_mut().filter(|(_, values)| values.len() == x.len() + 1);
+                    line.for_each(|(_, values)| *values = values.repeat(2)); // a row of cells has two rows of nodes
+                }
             }
             let fields: Vec<(&str, &[f64])> = fields.iter().map(|(name, v)| (*name, v.as_slice())).collect();
             let name = format!("vtk/frame_{k:04}.vti");
@@ -181,4 +208,25 @@ impl Finished {
         report::write_report(&path, report)?;
         Ok(path)
     }
+}
+
+/// A line per place and a column per map; NaN stands as an empty cell.
+fn write_maps(
+    path: &Path,
+    at: &str,
+    (x, y): (&[f64], &[f64]),
+    maps: &[(&str, Vec<f64>)],
+) -> Result<(), output::Error> {
+    output::whole_file(path, |out| {
+        let names: Vec<&str> = maps.iter().map(|(name, _)| *name).collect();
+        writeln!(out, "x{at},y{at},{}", names.join(","))?;
+        for k in 0..x.len() * y.len() {
+            write!(out, "{:?},{:?}", x[k % x.len()], y[k / x.len()])?;
+            for value in maps.iter().map(|(_, map)| map[k]) {
+                if value.is_nan() { write!(out, ",")? } else { write!(out, ",{value:?}")? }
+            }
+            writeln!(out)?;
+        }
+        Ok(())
+    })
 }

@@ -27,7 +27,7 @@ pub(super) struct Ground<'a> {
 
 impl<'a> Ground<'a> {
     pub fn of(story: &'a Story) -> Option<Ground<'a>> {
-        let raster = story.plane.bed.as_ref()?;
+        let raster = story.plane.mountain()?;
         let extent = Extent {
             nx: raster.columns,
             ny: raster.rows,
@@ -53,17 +53,36 @@ impl<'a> Ground<'a> {
         let mut outlines = Vec::new();
         for (k, points) in self.release.iter().enumerate() {
             let name = if k == 0 { "release" } else { "" };
-            outlines.push(Outline { name, points, closed: true, dashed: false, colour: Some(RELEASE) });
+            outlines.push(Outline {
+                name,
+                points,
+                closed: true,
+                colour: Some(RELEASE),
+                ..Default::default()
+            });
         }
         if edge {
             for (k, points) in self.footprint.iter().enumerate() {
                 let name = if k == 0 { "reached" } else { "" };
-                outlines.push(Outline { name, points, closed: true, dashed: true, colour: Some(EDGE) });
+                outlines.push(Outline {
+                    name,
+                    points,
+                    closed: true,
+                    dashed: true,
+                    colour: Some(EDGE),
+                    ..Default::default()
+                });
             }
         }
         if let Some(path) = self.path.as_ref().filter(|_| along) {
             let points = &path.points;
-            outlines.push(Outline { name: "path", points, closed: false, dashed: true, colour: Some(PATH) });
+            outlines.push(Outline {
+                name: "path",
+                points,
+                dashed: true,
+                colour: Some(PATH),
+                ..Default::default()
+            });
         }
         outlines
     }

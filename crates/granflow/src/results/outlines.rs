@@ -27,7 +27,7 @@ pub(super) fn rings(area: &MultiPolygon<f64>, least: f64) -> Vec<Vec<[f64; 2]>> 
 
 /// Write `outlines.geojson` of a run on a mountain.
 pub(super) fn write(run: &Finished) -> Result<Option<PathBuf>, output::Error> {
-    let Some(raster) = &run.plane.bed else { return Ok(None) };
+    let Some(raster) = run.plane.mountain() else { return Ok(None) };
     let release = Some(("release", run.plane.release.as_slice(), release_threshold(&run.plane.release)));
     let others = ["deposit", "peak_thickness"].map(|name| Some((name, run.map(name)?, REACHED)));
     let outline = |(name, map, threshold): (&str, &[f64], f64)| Outline {

@@ -8,7 +8,7 @@ use std::path::PathBuf;
 /// Write the maps of a run on a mountain: nodata outside the elevation model, and for the times where nothing came;
 /// thicknesses below the film are 0.
 pub(super) fn write(run: &Finished) -> Result<Vec<PathBuf>, RasterError> {
-    let Some(bed) = &run.plane.bed else { return Ok(Vec::new()) };
+    let Some(bed) = run.plane.mountain() else { return Ok(Vec::new()) };
     let folder = run.directory.join("rasters");
     std::fs::create_dir_all(&folder).map_err(|source| RasterError::Io { path: folder.clone(), source })?;
     let write = |name: &&str| -> Option<Result<PathBuf, RasterError>> {

@@ -1,6 +1,6 @@
 //! What the figures need of a run, from the run itself or from its files.
 
-use super::{FilesError, Finished, Plane};
+use super::{FilesError, Finished, Plane, Table, Under};
 use crate::output;
 use crate::output::frames::Frames;
 use crate::output::ledger::{Entry, Ledger};
@@ -20,10 +20,9 @@ pub struct Story {
     pub plane: Plane,
     /// The instants that are kept: all in one dimension, the first and the last otherwise.
     pub times: Vec<f64>,
-    /// Thickness at each of them.
-    pub thickness: Vec<Vec<f64>>,
-    /// Velocity along x at each of them, in one dimension.
-    pub velocity: Vec<Vec<f64>>,
+    /// What is shown of each of them, by name: `thickness` and, in one dimension, `velocity_x`; on a table
+    /// `standing_layer` and `rolling_layer`.
+    pub series: Vec<(&'static str, Vec<Vec<f64>>)>,
     /// The maps by name, as in [`Finished::maps`].
     pub maps: Vec<(String, Vec<f64>)>,
     /// The ledger; empty where it is not known.
@@ -36,6 +35,15 @@ fn instants(plane: &Plane, count: usize) -> Vec<usize> {
         _ if plane.y.is_empty() => (0..count).collect(),
         0 | 1 => (0..count).collect(),
         _ => vec![0, count - 1],
+    }
+}
+
+/// The series that figures show.
+fn shown(plane: &Plane) -> &'static [&'static str] {
+    match (plane.as_table(), plane.y.is_empty()) {
+        (Some(_), _) => &["standing_layer", "rolling_layer"],
+        (None, true) => &["thickness", "velocity_x"],
+        (None, false) => &["thickness"],
     }
 }
 
@@ -57,12 +65,13 @@ impl Story {
         let plane = run.plane.clone();
         let mut frames = Frames::open(run.frames.path())?.0;
         let kept = instants(&plane, frames.times().len());
-        let mut series = |name: &str| -> Result<Vec<Vec<f64>>, output::Error> {
-            let Some(field) = frames.position(name) else { return Ok(Vec::new()) };
-            kept.iter().map(|&frame| frames.read(frame, field)).collect()
-        };
-        let thickness = series("thickness")?;
-        let velocity = if plane.y.is_empty() { series("velocity_x")? } else { Vec::new() };
+        let mut series = Vec::new();
+        for &name in shown(&plane) {
+            let Some(field) = frames.position(name) else { continue };
+            let read: Result<_, output::Error> =
+                kept.iter().map(|&frame| frames.read(frame, field)).collect();
+            series.push((name, read?));
+        }
         let summary = &run.summary;
         Ok(Story {
             title: summary.title.clone(),
@@ -73,8 +82,7 @@ impl Story {
                 plane.is_terrain(),
             ),
             times: kept.iter().map(|&frame| frames.times()[frame]).collect(),
-            thickness,
-            velocity,
+            series,
             maps: run.maps.iter().map(|(name, map)| ((*name).to_owned(), map.clone())).collect(),
             ledger: run.ledger.clone(),
             plane,
@@ -95,10 +103,11 @@ impl Story {
             attribute.and_then(|attribute| attribute.value.as_string()).unwrap_or_default()
         };
         let has = |name: &str| file.variable(name).is_ok();
-        for name in ["time", "x", "thickness"] {
-            if !has(name) {
-                return Err(foreign(format!("it has no variable `{name}`")));
-            }
+        let table = has("standing_layer");
+        let needed: &[&str] =
+            if table { &["time", "x", "x_node", "rolling_layer"] } else { &["time", "x", "thickness"] };
+        if let Some(name) = needed.iter().find(|name| !has(name)) {
+            return Err(foreign(format!("it has no variable `{name}`")));
         }
         let whole = |name: &str| -> Result<Vec<f64>, FilesError> {
             let read = file.read_variable_as_f64(name);
@@ -106,11 +115,26 @@ impl Story {
         };
         let x = whole("x")?;
         let y = if has("y") { whole("y")? } else { Vec::new() };
-        let bed = if has("bed") { Some(raster(&x, &y, whole("bed")?).map_err(foreign)?) } else { None };
+        let optional = |name: &str| if has(name) { whole(name) } else { Ok(Vec::new()) };
+        let under = if table {
+            let faces = |name: &str| Ok::<_, FilesError>(optional(name)?.iter().map(|&w| w > 0.0).collect());
+            Under::Table(Table {
+                x_node: whole("x_node")?,
+                y_node: optional("y_node")?,
+                inside: Vec::new(),
+                height: optional("table_height")?,
+                wall_x: faces("wall_x")?,
+                wall_y: faces("wall_y")?,
+            })
+        } else if has("bed") {
+            Under::Mountain(raster(&x, &y, whole("bed")?).map_err(foreign)?)
+        } else {
+            Under::Chute
+        };
         let times = whole("time")?;
-        let mut plane = Plane { x, y, bed, release: Vec::new() };
+        let mut plane = Plane { x, y, under, release: Vec::new() };
         let kept = instants(&plane, times.len());
-        let series = |name: &str| -> Result<Vec<Vec<f64>>, FilesError> {
+        let read = |name: &str| -> Result<Vec<Vec<f64>>, FilesError> {
             let all = NcSliceInfoElem::Slice { start: 0, end: u64::MAX, step: 1 };
             let frame = |&frame: &usize| {
                 let mut selections = vec![NcSliceInfoElem::Index(frame as u64), all.clone()];
@@ -121,9 +145,10 @@ impl Story {
             };
             kept.iter().map(frame).collect()
         };
-        let thickness = series("thickness")?;
-        let velocity =
-            if plane.y.is_empty() && has("velocity_x") { series("velocity_x")? } else { Vec::new() };
+        let mut series = Vec::new();
+        for &name in shown(&plane).iter().filter(|name| has(name)) {
+            series.push((name, read(name)?));
+        }
         let mut maps = Vec::new();
         for name in super::MAPS.into_iter().filter(|name| has(name)) {
             maps.push((name.to_owned(), whole(name)?));
@@ -135,17 +160,31 @@ impl Story {
         };
         let summary = beside("summary.json").map(|path| Summary::read(&path)).transpose()?;
         let time = summary.map(|summary| summary.time).or(times.last().copied());
-        plane.release = thickness.first().cloned().unwrap_or_default();
+        let first = |name: &str| {
+            series.iter().find(|(own, _)| *own == name).and_then(|(_, series)| series.first()).cloned()
+        };
+        plane.release = first("thickness").unwrap_or_default();
+        if let Under::Table(table) = &mut plane.under {
+            table.inside = first("rolling_layer").unwrap_or_default().iter().map(|v| !v.is_nan()).collect();
+            if !table.fits(&plane.x, &plane.y) {
+                return Err(foreign("its cells do not fit its nodes".to_owned()));
+            }
+        }
         Ok(Story {
             title: text("title"),
             subtitle: subtitle(&text("scheme"), &text("stop_reason"), time, plane.is_terrain()),
             times: kept.iter().map(|&frame| times[frame]).collect(),
-            thickness,
-            velocity,
+            series,
             maps,
             ledger,
             plane,
         })
+    }
+
+    /// A series by its name; empty if it is not shown.
+    #[must_use]
+    pub fn series(&self, name: &str) -> &[Vec<f64>] {
+        self.series.iter().find(|(known, _)| *known == name).map_or(&[], |(_, series)| series)
     }
 
     /// A map by its name.

@@ -9,7 +9,7 @@ const RADIANS: &str = "a plain number is in radians: write \"18 deg\" for degree
 
 impl Case {
     pub(super) fn check_material(&self) -> Result<(), CaseError> {
-        let material = &self.material;
+        let Some(material) = &self.material else { return Ok(()) };
         self.positive("material.epsilon", material.epsilon)?;
         self.positive("material.gravity", material.gravity)?;
         self.positive("material.density", material.density)?;
@@ -75,7 +75,7 @@ impl Case {
             self.number(key, value, fits, "an angle between -90 deg and 90 deg (1.5708 rad)")
                 .map_err(|error| error.help(RADIANS))
         };
-        match &self.material.slope {
+        match &self.material().slope {
             None => return Ok(()),
             Some(Slope::Constant(angle)) => return steep("material.slope", angle.radians()),
             Some(Slope::Profile(profile)) => {

@@ -124,6 +124,17 @@ impl Scale {
         Self { range, logarithmic: false, coordinates: false }
     }
 
+    /// The scale of logarithms over the axis' range if that is positive, else over the positive ones of `values` and a
+    /// `factor` beyond them; none where there are none.
+    pub fn logarithmic(axis: &Axis, values: impl IntoIterator<Item = f64>, factor: f64) -> Option<Self> {
+        let found = extent(values.into_iter().filter(|&v| v > 0.0)).map(|[low, high]| {
+            let factor = if low < high { factor } else { 2.0 };
+            [low / factor, high * factor]
+        });
+        let range = axis.range.filter(|r| r[0] > 0.0 && r[1] > r[0]).or(found)?;
+        Some(Self { logarithmic: true, ..Self::new(range) })
+    }
+
     pub fn place(&self, value: f64) -> f64 {
         let [low, high] = self.range;
         if self.logarithmic {

@@ -2,7 +2,7 @@
 
 use super::axes::Panel;
 use super::canvas::{Canvas, Lettering};
-use super::colours::{Rgb, mix};
+use super::colours::{INK, Rgb, WHITE, mix};
 use super::ticks::{number, round_length};
 
 /// Contour lines every `interval`, each fifth one stronger.
@@ -23,8 +23,20 @@ impl Contours {
     /// `colour` with the contour line that passes here drawn over it: the distance to the line is |z - level| over the
     /// slope per pixel, so that lines are equally wide wherever they run.
     pub fn over_colour(&self, colour: Rgb, z: f64, slope: f64) -> Rgb {
-        if slope <= 1e-12 * self.interval {
-            return colour;
+        mix(colour, Self::COLOUR, self.ink(z, slope))
+    }
+
+    /// As [`Contours::over_colour`], dark over pale colours and white over dark ones.
+    pub fn against_colour(&self, colour: Rgb, z: f64, slope: f64) -> Rgb {
+        let [red, green, blue] = colour.map(f64::from);
+        let pale = 0.3 * red + 0.6 * green + 0.1 * blue > 100.0;
+        mix(colour, if pale { INK } else { WHITE }, self.ink(z, slope))
+    }
+
+    /// How much of a line passes here.
+    fn ink(&self, z: f64, slope: f64) -> f64 {
+        if slope.is_nan() || slope <= 1e-12 * self.interval {
+            return 0.0;
         }
         let strength = |interval: f64, half: f64, ink: f64| {
             let distance = (z - (z / interval).round() * interval).abs() / slope;
@@ -33,7 +45,7 @@ impl Contours {
         };
         let fine = strength(self.interval, 0.35, 0.42);
         let strong = strength(self.interval * Self::EACH, 0.9, 0.62);
-        mix(colour, Self::COLOUR, fine.max(strong))
+        fine.max(strong)
     }
 }
 

@@ -67,17 +67,9 @@ impl Figure for Convergence<'_> {
         }
         let none = || FigureError::empty(self.title, "no positive error at a positive cell size");
         let points = || self.series.iter().flat_map(ErrorSeries::points);
-        let room =
-            |range: Option<[f64; 2]>, factor: f64| range.map(|[low, high]| [low / factor, high * factor]);
         let sizes = extent(points().map(|(dx, _)| dx)).ok_or_else(none)?;
-        let errors = extent(points().map(|(_, e)| e)).ok_or_else(none)?;
-        let scale = |axis: Axis, range: [f64; 2], factor: f64| {
-            let range =
-                axis.range.filter(|r| r[0] > 0.0 && r[1] > r[0]).or_else(|| room(Some(range), factor));
-            range.map(|range| Scale { logarithmic: true, ..Scale::new(range) })
-        };
-        let x = scale(self.size, sizes, 1.35).ok_or_else(none)?;
-        let y = scale(self.error, errors, 2.0).ok_or_else(none)?;
+        let x = Scale::logarithmic(&self.size, points().map(|(dx, _)| dx), 1.35).ok_or_else(none)?;
+        let y = Scale::logarithmic(&self.error, points().map(|(_, e)| e), 2.0).ok_or_else(none)?;
 
         let (width, height) = (720.0, 540.0);
         let mut canvas = Canvas::new(width, height);

@@ -127,6 +127,8 @@ pub struct Profiles<'a> {
     pub curves: &'a [Curve<'a>],
     /// Bands behind the curves.
     pub fills: &'a [Fill<'a>],
+    /// Which of the axes x and y are logarithmic, as for errors against iterations; what is not positive is left out there.
+    pub logarithmic: [bool; 2],
 }
 
 impl Figure for Profiles<'_> {
@@ -143,8 +145,18 @@ impl Figure for Profiles<'_> {
         let bands =
             self.fills.iter().flat_map(|f| f.upper.iter().chain(f.lower.into_iter().flatten()).copied());
         let ys = all(|c| c.y.to_vec()).chain(bands);
-        let x = Scale::new(self.x.range_of(extent(xs).map(rounded), 0.0).ok_or_else(|| none("x"))?);
-        let y = Scale::new(self.y.range_of(extent(ys), 0.05).ok_or_else(|| none("y"))?);
+        let [log_x, log_y] = self.logarithmic;
+        let x = if log_x {
+            Scale::logarithmic(&self.x, xs, 1.0)
+        } else {
+            self.x.range_of(extent(xs).map(rounded), 0.0).map(Scale::new)
+        };
+        let y = if log_y {
+            Scale::logarithmic(&self.y, ys, 1.5)
+        } else {
+            self.y.range_of(extent(ys), 0.05).map(Scale::new)
+        };
+        let (x, y) = (x.ok_or_else(|| none("x"))?, y.ok_or_else(|| none("y"))?);
 
         let (width, height) = (800.0, 500.0);
         let mut canvas = Canvas::new(width, height);

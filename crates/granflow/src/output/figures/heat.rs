@@ -6,6 +6,7 @@ use super::axes::{
 use super::canvas::{Area, Canvas, Pen};
 use super::colour_bar::ColourBar;
 use super::colours::{Colours, INK, Rgb, WHITE, pick};
+use super::contours::{Contours, Elevations};
 use super::lattice::{Between, Lattice, paint};
 use super::{Figure, FigureError, Picture};
 
@@ -32,18 +33,21 @@ pub struct Outline<'a> {
     pub dashed: bool,
     /// Its colour; dark grey where `None`.
     pub colour: Option<Rgb>,
+    /// Its width in points; 1.8 between white rims where `None`.
+    pub width: Option<f64>,
 }
 
 impl Outline<'_> {
     pub(super) fn pen(&self) -> Pen {
         let dashes: &'static [f32] = if self.dashed { &[6.0, 4.0] } else { &[] };
-        Pen { dashes, ..Pen::new(self.colour.unwrap_or(INK), 1.8) }
+        Pen { dashes, ..Pen::new(self.colour.unwrap_or(INK), self.width.unwrap_or(1.8)) }
     }
 
     pub(super) fn draw(&self, canvas: &mut Canvas, panel: &Panel) {
         let line: Vec<_> = self.points.iter().map(|&[x, y]| panel.place(x, y)).collect();
         let casing = Pen { alpha: 0.7, ..Pen::new(WHITE, 3.6) };
-        for pen in [casing, self.pen()] {
+        let cased = self.width.is_none().then_some(casing);
+        for pen in cased.into_iter().chain([self.pen()]) {
             if self.closed { canvas.ring(&line, pen) } else { canvas.line(&line, pen) }
         }
     }
@@ -72,8 +76,23 @@ pub struct HeatMap<'a> {
     pub quantity: Axis<'a>,
     /// The scale of colours.
     pub colours: Colours,
+    /// Lines of equal height of a second field.
+    pub levels: Option<Levels<'a>>,
     /// Lines over the field.
     pub outlines: &'a [Outline<'a>],
+}
+
+/// A field whose lines of equal height are drawn over another one, on points of its own.
+#[derive(Debug, Clone, Copy)]
+pub struct Levels<'a> {
+    /// Increasing abscissae.
+    pub xs: &'a [f64],
+    /// Increasing ordinates.
+    pub ys: &'a [f64],
+    /// The field, `ys.len()` rows of `xs.len()` values.
+    pub values: &'a [f64],
+    /// From one line to the next; each fifth is stronger.
+    pub interval: f64,
 }
 
 impl HeatMap<'_> {
@@ -138,9 +157,30 @@ impl Figure for HeatMap<'_> {
             (0..rows).map(|k| Between::among(at(rows - 1 - k, rows, y.range), self.ys)).collect();
         let field = Lattice { values: self.values, nx };
         let table = self.colours.table();
+        let mut heights = Vec::new();
+        if let Some(levels) = &self.levels {
+            FigureError::same_length(
+                self.title,
+                "the levels",
+                levels.values.len(),
+                levels.xs.len() * levels.ys.len(),
+            )?;
+            let lattice = Lattice { values: levels.values, nx: levels.xs.len() };
+            let along: Vec<_> =
+                (0..columns).map(|k| Between::among(at(k, columns, x.range), levels.xs)).collect();
+            heights = (0..rows)
+                .map(|k| Between::among(at(rows - 1 - k, rows, y.range), levels.ys))
+                .flat_map(|up| along.iter().map(move |&along| lattice.at(along, up)))
+                .collect();
+        }
+        let surface = Elevations { elevation: &heights, columns, rows };
         let image = paint((columns, rows), |column, row| {
             let value = field.at(across[column], up[row]);
-            value.is_finite().then(|| pick(&table, value, range))
+            let colour = value.is_finite().then(|| pick(&table, value, range))?;
+            let Some(levels) = &self.levels else { return Some(colour) };
+            let (height, slope) = (heights[row * columns + column], surface.slope(column, row));
+            let lines = Contours { interval: levels.interval };
+            Some(lines.against_colour(colour, height, slope))
         });
         if let Some(image) = image {
             canvas.image(&image, [panel.area.left, panel.area.top]);

@@ -1,11 +1,12 @@
-//! A surface z(x, y) or z(x, t) in perspective, hidden parts hidden, coloured by height.
+//! A surface z(x, y) or z(x, t) in perspective, hidden parts hidden, coloured by height or by another field.
 
-use super::axes::{Axis, RIM, Scale, TICK_SIZE, extent, heading, heading_height};
-use super::canvas::{Area, Canvas, Lettering, Pen, SCALE};
-use super::colours::{Colours, INK, PALE, mix, pick, shade};
+use super::axes::{Axis, RIM, Scale, extent, heading, heading_height};
+use super::canvas::{Area, Canvas, SCALE};
+use super::colour_bar::ColourBar;
+use super::colours::{Colours, Rgb, mix, pick, shade};
 use super::depth::{Depth, Vertex};
 use super::heat::check_coordinates;
-use super::ticks::{Ticks, linear};
+use super::perspective::{Eye, dot, draw_box};
 use super::{Figure, FigureError, Picture};
 
 /// A surface over a rectangle.
@@ -27,6 +28,8 @@ pub struct Surface<'a> {
     pub ys: &'a [f64],
     /// The heights, `ys.len()` rows of `xs.len()` values; the surface has a hole where one is not finite.
     pub values: &'a [f64],
+    /// The field that gives the colours; the height itself where `None`.
+    pub paint: Option<Paint<'a>>,
     /// The scale of colours.
     pub colours: Colours,
     /// Where the eye stands: degrees from the x axis towards the y axis (-60 where `None`).
@@ -37,107 +40,47 @@ pub struct Surface<'a> {
     pub proportions: Option<[f64; 3]>,
     /// Mesh lines along each axis (30 where `None`; 0 for a smooth surface).
     pub lines: Option<usize>,
+    /// Whether each face has its own light, so that ridges stay sharp; else the light goes over from one to the next.
+    pub facets: bool,
+    /// Walls that stand along lines of the lattice, from the floor to a little above the surface: their two ends.
+    pub walls: &'a [[[f64; 2]; 2]],
 }
 
-/// The eye: three axes of the picture and its distance from the middle of the box.
-struct Eye {
-    right: [f64; 3],
-    up: [f64; 3],
-    towards: [f64; 3],
-    distance: f64,
-    /// Points per unit and the place of the middle of the box.
-    zoom: f64,
-    middle: [f64; 2],
+/// A field on a surface: a value for each of its points, or for each cell between four of them, where one that is not
+/// finite leaves a hole.
+#[derive(Debug, Clone, Copy)]
+pub struct Paint<'a> {
+    /// The field, in the order of the heights.
+    pub values: &'a [f64],
+    /// Name, unit and range, for the colour bar.
+    pub quantity: Axis<'a>,
 }
 
-fn dot(a: [f64; 3], b: [f64; 3]) -> f64 {
-    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
-}
-
-impl Eye {
-    /// The eye that sees the box as great as `area` allows; the area's height shrinks to what is used.
-    fn new((azimuth, elevation): (f64, f64), half: [f64; 3], area: &mut Area) -> Self {
-        let ((sa, ca), (se, ce)) = (azimuth.to_radians().sin_cos(), elevation.to_radians().sin_cos());
-        let mut eye = Self {
-            right: [-sa, ca, 0.0],
-            up: [-se * ca, -se * sa, ce],
-            towards: [ce * ca, ce * sa, se],
-            distance: 5.0 * dot(half, half).sqrt(),
-            zoom: 1.0,
-            middle: [0.0, 0.0],
+impl Paint<'_> {
+    /// The field at the points of the surface: the mean of the cells around.
+    fn at_points(&self, nx: usize, ny: usize) -> Vec<f64> {
+        if self.values.len() == nx * ny {
+            return self.values.to_vec();
+        }
+        let mean = |k: usize| {
+            let (i, j) = (k % nx, k / nx);
+            let rows = j.saturating_sub(1)..(j + 1).min(ny - 1);
+            let around = rows.flat_map(|j| {
+                (i.saturating_sub(1)..(i + 1).min(nx - 1)).map(move |i| self.values[j * (nx - 1) + i])
+            });
+            let (sum, count) =
+                around.filter(|v| v.is_finite()).fold((0.0, 0.0), |(sum, n), v| (sum + v, n + 1.0));
+            sum / count
         };
-        let corners =
-            (0..8).map(|k| std::array::from_fn(|a| if k >> a & 1 == 1 { half[a] } else { -half[a] }));
-        let (xs, ys): (Vec<f64>, Vec<f64>) =
-            corners.map(|corner| eye.place(corner)).map(|p| (p[0], p[1])).unzip();
-        let ([x0, x1], [y0, y1]) = (extent(xs).unwrap_or([0.0, 1.0]), extent(ys).unwrap_or([0.0, 1.0]));
-        eye.zoom = (area.width / (x1 - x0)).min(area.height / (y1 - y0));
-        area.top = area.top.round(); // the picture of the surface is laid on whole pixels
-        area.height = eye.zoom * (y1 - y0);
-        eye.middle = [
-            area.left + 0.5 * area.width - eye.zoom * 0.5 * (x0 + x1),
-            area.top + 0.5 * area.height - eye.zoom * 0.5 * (y0 + y1),
-        ];
-        eye
-    }
-
-    /// One over the distance from the eye's plane: even across a plane's picture, greater for what is nearer.
-    fn nearness(&self, p: [f64; 3]) -> f64 {
-        1.0 / (self.distance - dot(p, self.towards))
-    }
-
-    fn place(&self, p: [f64; 3]) -> [f64; 2] {
-        let size = self.zoom * self.distance * self.nearness(p);
-        [self.middle[0] + size * dot(p, self.right), self.middle[1] - size * dot(p, self.up)]
+        (0..nx * ny).map(mean).collect()
     }
 }
 
-/// One edge of the box with its marks.
-struct Edge<'a> {
-    axis: &'a Axis<'a>,
-    scale: Scale,
-    ticks: &'a Ticks,
-    /// Which coordinate runs along it.
-    along: usize,
-    /// A point of the edge, and the direction in which its labels stand away from the box.
-    point: [f64; 3],
-    outward: [f64; 3],
-}
+/// How far walls stand above the surface, as a share of the height of the box, and their colour.
+const WALL: (f64, Rgb) = (0.05, [88, 92, 104]);
 
-impl Edge<'_> {
-    fn at(&self, share: f64, half: [f64; 3], out: f64) -> [f64; 3] {
-        let mut p = self.point;
-        p[self.along] = (2.0 * share - 1.0) * half[self.along];
-        std::array::from_fn(|a| p[a] + out * self.outward[a])
-    }
-
-    fn draw(&self, canvas: &mut Canvas, eye: &Eye, half: [f64; 3]) {
-        let pen = Pen::new(INK, 1.0);
-        let ends = [self.at(0.0, half, 0.0), self.at(1.0, half, 0.0)].map(|p| eye.place(p));
-        canvas.line(&ends, pen);
-        let [foot, tip] = [self.at(0.5, half, 0.0), self.at(0.5, half, 0.1)].map(|p| eye.place(p));
-        let length = (tip[0] - foot[0]).hypot(tip[1] - foot[1]).max(1e-9);
-        let away = [(tip[0] - foot[0]) / length, (tip[1] - foot[1]) / length];
-        let align = [0.5 - 0.5 * away[0], 0.5 + 0.5 * away[1]];
-        let off = |p: [f64; 2], d: f64| [p[0] + d * away[0], p[1] + d * away[1]];
-        let mut deepest: f64 = 0.0;
-        for (&value, label) in self.ticks.at.iter().zip(&self.ticks.labels) {
-            let p = eye.place(self.at(self.scale.place(value), half, 0.0));
-            canvas.line(&[p, off(p, 5.0)], pen);
-            canvas.text(label, off(p, 9.0), Lettering::new(TICK_SIZE, align));
-            let width = super::typeface::width(label, TICK_SIZE);
-            deepest = deepest.max(9.0 + width * away[0].abs() + TICK_SIZE * 0.73 * away[1].abs());
-        }
-        let caption = self.axis.caption().text(self.ticks.exponent);
-        let mut angle = (-(ends[1][1] - ends[0][1])).atan2(ends[1][0] - ends[0][0]).to_degrees();
-        if !(-80.0..=100.0).contains(&angle) {
-            angle -= 180.0 * angle.signum();
-        }
-        let middle = [0.5 * (ends[0][0] + ends[1][0]), 0.5 * (ends[0][1] + ends[1][1])];
-        let how = Lettering { angle, ..Lettering::new(13.0, [0.5, 0.5]) };
-        canvas.text(&caption, off(middle, deepest + 16.0), how);
-    }
-}
+/// A point of the surface: where it is in the box, and in the picture.
+type Point = ([f64; 3], Vertex);
 
 impl Figure for Surface<'_> {
     fn draw(&self) -> Result<Picture, FigureError> {
@@ -155,8 +98,26 @@ impl Figure for Surface<'_> {
             .filter(|p| p.iter().all(|&s| s > 0.0 && s.is_finite()))
             .unwrap_or([1.0, 1.0, 0.6]);
         let half = sides.map(|side| 0.5 * side);
-        let (width, top) = (800.0, heading_height(self.title, self.subtitle));
-        let mut area = Area { left: 82.0, top: top + 4.0, width: width - 164.0, height: 480.0 };
+        let (colours_of, cells) = match &self.paint {
+            Some(paint) => {
+                let cells = paint.values.len() == (nx - 1) * (ny - 1);
+                if !cells {
+                    FigureError::same_length(self.title, "the paint", paint.values.len(), nx * ny)?;
+                }
+                (paint.at_points(nx, ny), cells)
+            }
+            None => (self.values.to_vec(), false),
+        };
+        let shown = extent(colours_of.iter().copied()).unwrap_or(heights);
+        let quantity = self.paint.map(|paint| paint.quantity);
+        let shown = quantity.and_then(|quantity| quantity.range_of(Some(shown), 0.0)).unwrap_or(shown);
+        let range = self.colours.range(shown);
+        let bar =
+            quantity.map(|quantity| ColourBar { colours: self.colours, range, caption: quantity.caption() });
+        const BAR: f64 = 260.0;
+        let room = bar.as_ref().map_or(0.0, |bar| bar.room(BAR) - 30.0);
+        let (width, top) = (800.0 + room, heading_height(self.title, self.subtitle));
+        let mut area = Area { left: 82.0, top: top + 4.0, width: 636.0, height: 480.0 };
         let towards = (self.azimuth.unwrap_or(-60.0), self.elevation.unwrap_or(32.0).clamp(5.0, 85.0));
         let eye = Eye::new(towards, half, &mut area);
         let height = area.bottom() + 62.0 + RIM;
@@ -174,24 +135,20 @@ impl Figure for Surface<'_> {
         let sun: [f64; 3] =
             std::array::from_fn(|a| -0.55 * eye.right[a] + 0.45 * eye.up[a] + 0.70 * eye.towards[a]);
         let fine = 2.0 * SCALE;
-        let vertex = |i: usize, j: usize| -> Option<Vertex> {
-            let height = self.values[j * nx + i];
+        let seen = |p: [f64; 3], height: f64, light: f64, mesh: [f64; 2]| {
+            let [x, y] = eye.place(p);
+            let place = [(x - area.left) * fine, (y - area.top) * fine];
+            Vertex { place, nearness: eye.nearness(p), height, light, mesh }
+        };
+        let point = |i: usize, j: usize| -> Option<Point> {
             let p = spot(i, j);
             let [w, e] = [spot(i.saturating_sub(1), j), spot((i + 1).min(nx - 1), j)];
             let [s, n] = [spot(i, j.saturating_sub(1)), spot(i, (j + 1).min(ny - 1))];
             let slopes = [(e[2] - w[2]) / (e[0] - w[0]), (n[2] - s[2]) / (n[1] - s[1])]
                 .map(|s| if s.is_finite() { s } else { 0.0 });
-            let normal = [-slopes[0], -slopes[1], 1.0];
-            let light = dot(normal, sun).max(0.0) / dot(normal, normal).sqrt();
-            let [x, y] = eye.place(p);
-            let place = [(x - area.left) * fine, (y - area.top) * fine];
-            height.is_finite().then(|| Vertex {
-                place,
-                nearness: eye.nearness(p),
-                height,
-                light,
-                mesh: [i as f64, j as f64],
-            })
+            let light = lit([-slopes[0], -slopes[1], 1.0], sun);
+            let vertex = seen(p, colours_of[j * nx + i], light, [i as f64, j as f64]);
+            self.values[j * nx + i].is_finite().then_some((p, vertex))
         };
         let [columns, rows] = [area.width, area.height].map(|side| 2 * (side * SCALE).ceil() as usize);
         let mut depth = Depth::new(columns, rows);
@@ -199,102 +156,91 @@ impl Figure for Surface<'_> {
         let spacing = [nx, ny].map(|n| {
             if lines == 0 { f64::INFINITY } else { ((n - 1) as f64 / lines as f64).ceil().max(1.0) }
         });
-        let (table, range) = (self.colours.table(), self.colours.range(found.unwrap_or(heights)));
+        let table = self.colours.table();
         let colour = |height: f64, light: f64, ink: f64| {
             let base = shade(pick(&table, height, range), 0.74 + 0.30 * light);
             mix(base, [20, 20, 30], if lines == 0 { 0.0 } else { 0.55 * ink })
         };
-        let line = |j: usize| -> Vec<Option<Vertex>> { (0..nx).map(|i| vertex(i, j)).collect() };
+        let mut face = |corners: [Point; 3]| {
+            let mut seen = corners.map(|(_, vertex)| vertex);
+            if self.facets {
+                let light = lit(upwards(corners.map(|(p, _)| p)), sun);
+                seen.iter_mut().for_each(|vertex| vertex.light = light);
+            }
+            depth.triangle(seen, spacing, colour);
+        };
+        let line = |j: usize| -> Vec<Option<Point>> { (0..nx).map(|i| point(i, j)).collect() };
+        let hole = |i: usize, j: usize| {
+            cells && self.paint.is_some_and(|paint| !paint.values[(j - 1) * (nx - 1) + i - 1].is_finite())
+        };
         let mut before = line(0);
         for j in 1..ny {
             let after = line(j);
             for i in 1..nx {
-                if let (Some(a), Some(b), Some(c), Some(d)) =
-                    (before[i - 1], before[i], after[i - 1], after[i])
-                {
-                    depth.triangle([a, b, d], spacing, colour);
-                    depth.triangle([a, d, c], spacing, colour);
+                let (Some(a), Some(b), Some(c), Some(d)) = (before[i - 1], before[i], after[i - 1], after[i])
+                else {
+                    continue;
+                };
+                if hole(i, j) {
+                    continue;
+                }
+                // Cut along the higher diagonal: a ridge that crosses the cell stays one.
+                let high = |p: Point, q: Point| p.0[2] + q.0[2];
+                if high(b, c) > high(a, d) {
+                    face([a, b, c]);
+                    face([b, d, c]);
+                } else {
+                    face([a, b, d]);
+                    face([a, d, c]);
                 }
             }
             before = after;
         }
+        for [from, to] in self.walls {
+            let near = |at: f64, among: &[f64]| among.partition_point(|&c| c < at - 1e-9 * at.abs());
+            let index = |[x, y]: [f64; 2]| [near(x, self.xs).min(nx - 1), near(y, self.ys).min(ny - 1)];
+            let ([i0, j0], [i1, j1]) = (index(*from), index(*to));
+            let steps = i0.abs_diff(i1).max(j0.abs_diff(j1));
+            let at = |k: usize| {
+                let along = |a: usize, b: usize| {
+                    if a < b {
+                        a + k
+                    } else if a > b {
+                        a - k
+                    } else {
+                        a
+                    }
+                };
+                let foot = spot(along(i0, i1), along(j0, j1));
+                let top = foot[2] + WALL.0 * 2.0 * half[2];
+                [-half[2], top].map(|z| seen([foot[0], foot[1], z], 0.0, 0.0, [0.0; 2]))
+            };
+            for k in 0..steps {
+                let ([a, b], [c, d]) = (at(k), at(k + 1));
+                let across = if i0 == i1 { 0 } else { 1 };
+                let dark = shade(WALL.1, if across == 0 { 1.1 } else { 0.92 });
+                depth.triangle([a, b, d], [f64::INFINITY; 2], |_, _, _| dark);
+                depth.triangle([a, d, c], [f64::INFINITY; 2], |_, _, _| dark);
+            }
+        }
         if let Some(image) = depth.halved() {
             canvas.image(&image, [area.left, area.top]);
+        }
+        if let Some(bar) = bar {
+            bar.draw(&mut canvas, 800.0 - 44.0, area.top + 0.5 * (area.height - BAR), BAR);
         }
         Ok(canvas.finish())
     }
 }
 
-/// Floor, the two far walls with lines at the marks, and the three edges that carry the labels.
-fn draw_box(
-    canvas: &mut Canvas,
-    eye: &Eye,
-    half: [f64; 3],
-    near: [f64; 2],
-    scales: &[Scale; 3],
-    axes: [&Axis; 3],
-) {
-    let ticks: [Ticks; 3] = [0, 1, 2].map(|a| linear(scales[a].range, if a == 2 { 5 } else { 6 }, false));
-    let far = [-near[0], -near[1]];
-    // Each face: the coordinate held and its value.
-    for (held, value) in [(2, -half[2]), (0, far[0]), (1, far[1])] {
-        let [a, b] = match held {
-            0 => [1, 2],
-            1 => [0, 2],
-            _ => [0, 1],
-        };
-        let at = |u: f64, v: f64| {
-            let mut p = [value; 3];
-            (p[a], p[b]) = (u, v);
-            eye.place(p)
-        };
-        let corners =
-            [at(-half[a], -half[b]), at(half[a], -half[b]), at(half[a], half[b]), at(-half[a], half[b])];
-        canvas.fill(&corners, [246, 246, 246], 1.0);
-        for &v in &ticks[a].at {
-            let u = (2.0 * scales[a].place(v) - 1.0) * half[a];
-            canvas.line(&[at(u, -half[b]), at(u, half[b])], Pen::new(PALE, 1.0));
-        }
-        for &v in &ticks[b].at {
-            let u = (2.0 * scales[b].place(v) - 1.0) * half[b];
-            canvas.line(&[at(-half[a], u), at(half[a], u)], Pen::new(PALE, 1.0));
-        }
-        canvas.ring(&corners, Pen::new([170, 170, 170], 1.0));
-    }
-    let floor = -half[2];
-    let edge = |along: usize, point: [f64; 3], outward: [f64; 3]| Edge {
-        axis: axes[along],
-        scale: scales[along],
-        ticks: &ticks[along],
-        along,
-        point,
-        outward,
-    };
-    edge(0, [0.0, near[1], floor], [0.0, near[1].signum(), 0.0]).draw(canvas, eye, half);
-    edge(1, [near[0], 0.0, floor], [near[0].signum(), 0.0, 0.0]).draw(canvas, eye, half);
-    // The vertical edge at the left of the picture.
-    let silhouettes = [[near[0], far[1]], [far[0], near[1]]];
-    let left = |p: &[f64; 2]| eye.place([p[0], p[1], 0.0])[0];
-    let [x, y] = if left(&silhouettes[0]) < left(&silhouettes[1]) { silhouettes[0] } else { silhouettes[1] };
-    let outward = eye.right.map(|r| -r);
-    edge(2, [x, y, 0.0], outward).draw(canvas, eye, half);
+/// How much of the sun's light a face with this normal gets.
+fn lit(normal: [f64; 3], sun: [f64; 3]) -> f64 {
+    dot(normal, sun).max(0.0) / dot(normal, normal).sqrt()
 }
 
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn the_box_fills_the_area_and_keeps_left_and_right() {
-        let mut area = Area { left: 10.0, top: 20.0, width: 600.0, height: 5000.0 };
-        let half = [0.5, 0.5, 0.3];
-        let eye = Eye::new((-60.0, 30.0), half, &mut area);
-        assert!(area.height < 600.0);
-        let corners =
-            (0..8).map(|k| std::array::from_fn(|a| if k >> a & 1 == 1 { half[a] } else { -half[a] }));
-        let xs = extent(corners.map(|c| eye.place(c)[0])).unwrap();
-        assert!((xs[0] - 10.0).abs() < 1e-9 && (xs[1] - 610.0).abs() < 1e-9);
-        assert!(eye.place([0.5, 0.0, 0.0])[0] > eye.place([-0.5, 0.0, 0.0])[0]);
-        assert!(eye.nearness([0.0, -0.5, 0.0]) > eye.nearness([0.0, 0.5, 0.0]));
-    }
+/// The normal of a triangle that points upwards.
+fn upwards([a, b, c]: [[f64; 3]; 3]) -> [f64; 3] {
+    let [p, q]: [[f64; 3]; 2] = [b, c].map(|corner| std::array::from_fn(|k| corner[k] - a[k]));
+    let normal = [p[1] * q[2] - p[2] * q[1], p[2] * q[0] - p[0] * q[2], p[0] * q[1] - p[1] * q[0]];
+    if normal[2] < 0.0 { normal.map(|part| -part) } else { normal }
 }

@@ -20,7 +20,7 @@ pub(super) fn round_step(least: f64) -> f64 {
 }
 
 /// The greatest of 1, 2, 5 times a power of ten that is at most `most`.
-pub(super) fn round_length(most: f64) -> f64 {
+pub fn round_length(most: f64) -> f64 {
     let decade = 10f64.powi(most.log10().floor() as i32);
     [5.0, 2.0].into_iter().map(|m| m * decade).find(|&s| s <= most).unwrap_or(decade)
 }

@@ -1,11 +1,12 @@
 //! One example run by one scheme, in memory, and what is measured on it.
 
 use granflow::case::Case;
+use granflow::hadeler_kuttler::scheme::HadelerKuttler;
 use granflow::savage_hutter::Flow;
 use granflow::savage_hutter::exact::Riemann;
 use granflow::savage_hutter::ground::Bed;
 use granflow::scheme::Scheme;
-use granflow::setup::{Scene, Visit};
+use granflow::setup::{Sand, Scene, Visit};
 use granflow::simulation::Simulation;
 
 use super::examples::{EXAMPLES, Example, Id, SCHEMES};
@@ -166,7 +167,7 @@ impl Runs {
     /// Runs every example by every scheme, on all cores.
     pub fn compute() -> Result<Self, Failure> {
         let schemes = SCHEMES.len();
-        super::parallel(EXAMPLES.len() * schemes, |k| {
+        super::super::parallel(EXAMPLES.len() * schemes, |k| {
             Computed::run(&EXAMPLES[k / schemes], SCHEMES[k % schemes])
         })
         .into_iter()
@@ -198,6 +199,14 @@ struct Collect {
 
 impl Visit for Collect {
     type Output = Computed;
+
+    fn visit_sand<const D: usize>(
+        self,
+        _sand: &Sand<D>,
+        _simulation: Simulation<D, HadelerKuttler>,
+    ) -> Computed {
+        unreachable!("the examples are flows down chutes")
+    }
 
     fn visit<const D: usize, S>(self, mut simulation: Simulation<D, S>) -> Computed
     where

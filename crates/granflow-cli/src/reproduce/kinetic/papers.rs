@@ -17,6 +17,13 @@ pub struct Paper {
     pub figures: &'static [Printed],
 }
 
+impl Paper {
+    /// Both names.
+    pub const fn names(&self) -> [&'static str; 2] {
+        [self.name, self.alias]
+    }
+}
+
 /// A figure of a paper.
 #[derive(Debug)]
 pub struct Printed {

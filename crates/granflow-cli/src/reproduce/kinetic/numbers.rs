@@ -5,15 +5,13 @@ use granflow::savage_hutter::exact::{Riemann, Wave};
 use granflow::savage_hutter::flux;
 use std::f64::consts::PI;
 
+use super::super::INDEPENDENT;
 use super::computed::Runs;
 use super::examples::Id;
 use super::papers::Paper;
 
 use Expected::{Exact, Published};
 use Measure::{Absolute, AtLeast, AtMost};
-
-/// What stands beside values that no paper prints: the papers' schemes, transcribed and run independently.
-const INDEPENDENT: &str = "independent run of the printed scheme";
 
 struct Table<'a> {
     rows: Vec<Row>,
