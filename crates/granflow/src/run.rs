@@ -309,7 +309,7 @@ impl<'s, const D: usize, S: Model<D>> Run<'_, 's, D, S> {
         };
         // The middle of the step: second order where a rate varies, and the better side of a change within a fixed step.
         let half = 0.5 * self.simulation.wanted_step().min(end.min(self.next_frame) - time);
-        if sand.sources.is_moving() {
+        if sand.sources.is_moving(time) {
             let next = after(time);
             let middle = if adaptive { time + half.min(0.5 * (next - time)) } else { time + half };
             S::pour(&mut self.simulation, sand, middle);
@@ -393,7 +393,8 @@ impl<'s, const D: usize, S: Model<D>> Run<'_, 's, D, S> {
     fn is_steady(&self, rate: f64) -> bool {
         let Some(sand) = self.sand else { return false };
         let time = self.simulation.time();
-        let changes = sand.sources.is_moving() || sand.sources.changes().iter().any(|change| *change > time);
+        let changes =
+            sand.sources.is_moving(time) || sand.sources.changes().iter().any(|change| *change > time);
         let [u, v, _] = self.simulation.drift();
         sand.equilibrium.is_some() || (!changes && u < rate && v < rate)
     }
@@ -516,6 +517,9 @@ impl<'s, const D: usize, S: Model<D>> Run<'_, 's, D, S> {
             summary.add(&format!("mass_out_{name}"), value);
         }
         S::sum_up(simulation, self.sand, &mut summary);
+        if case.time.until == Some(case::Until::Steady) && !direct {
+            summary.add("steady_rate", case.time.steady_rate());
+        }
         let unpad = |map: &[f64]| -> Vec<f64> {
             let place = |number| simulation.place(simulation.grid().index(number));
             (0..simulation.grid().count()).map(|number| map[place(number)]).collect()

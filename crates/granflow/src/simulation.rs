@@ -23,7 +23,7 @@ pub enum StepSize {
 pub enum Failure {
     /// A state became infinite or not a number.
     #[error(
-        "the state is not finite after step {step}, time {time}: take a smaller step, or a positive scheme (verfahren_1, balanced)"
+        "the state is not finite after step {step}, time {time}: take a smaller step, or a scheme that keeps depths positive; a rate that is not finite does it too"
     )]
     NotFinite {
         /// Steps done.
@@ -388,7 +388,8 @@ impl<const D: usize, S: Scheme<D, f64>> Simulation<D, S> {
         }
         let (courant, most) = (dt * self.rate(), self.scheme.most_courant());
         if courant > most * (1.0 + 1e-9) {
-            return Err(Failure::TooLong { step: self.step, time: self.time, dt, courant, most });
+            let courant = wanted * self.rate();
+            return Err(Failure::TooLong { step: self.step, time: self.time, dt: wanted, courant, most });
         }
         self.wake();
         let mut out = [0.0; 5];

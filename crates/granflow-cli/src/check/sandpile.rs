@@ -33,7 +33,7 @@ fn table_lines<const D: usize>(case: &Case) -> Result<Vec<(&'static str, String)
     let poured = |t: f64| sources.rate(t).iter().sum::<f64>() * cell;
     lines.push(("poured", format!("{:.6} a time at the start", poured(0.0))));
     lines.extend(sources.changes().iter().map(|t| ("", format!("{:.6} from time {t} on", poured(*t)))));
-    if sources.is_moving() {
+    if sources.is_moving(0.0) {
         lines.push(("", "and changing in time by a formula".to_owned()));
     }
     let [u, v] = [&plan.standing, &plan.rolling].map(|layer| range(layer).1);

@@ -41,7 +41,7 @@ pub enum Rate {
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum Varying {
-    /// A formula in x, y and t; where it falls below 0 after its beginning it counts as 0.
+    /// A formula in x, y and t; where it falls below 0, or is no number, after its beginning it counts as 0.
     Formula(String),
 }
 
@@ -134,10 +134,11 @@ impl Sources {
         times
     }
 
-    /// Whether a rate depends on the time by a formula, so that it changes between the times of [`Sources::changes`].
+    /// Whether a rate depends on the time by a formula at `time` or later, so that it changes between the times of
+    /// [`Sources::changes`].
     #[must_use]
-    pub fn is_moving(&self) -> bool {
-        self.parts.iter().any(Part::is_moving)
+    pub fn is_moving(&self, time: f64) -> bool {
+        self.parts.iter().any(|part| part.span[1] > time && part.is_moving())
     }
 
     /// The rate of every cell once all switching is over, from the sources that never end; `None` if one of them moves.

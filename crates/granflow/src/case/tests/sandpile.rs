@@ -185,12 +185,14 @@ fn sources_add_up_and_switch() {
     case.check().unwrap();
     let sources = sources(&case);
     assert_eq!(sources.changes(), [1.0, 3.0]);
-    assert!(sources.is_moving() && sources.lasting().is_none());
+    assert!(sources.is_moving(0.0) && sources.lasting().is_none());
     let at = |t: f64, cell: usize| sources.rate(t)[cell];
     assert_eq!((at(0.0, 0), at(0.0, 9), at(1.0, 0), at(1.0, 9), at(3.0, 0)), (1.0, 0.0, 3.0, 2.0, 1.0));
     assert_eq!(at(4.0, 44), 1.0 + 0.45 * 4.0);
     let still = poured(&["source=[{rate.formula=\"y\",from=1},{rate=7,to=2}]"]);
-    assert!(!still.is_moving());
+    assert!(!still.is_moving(0.0));
+    let gone = poured(&["source=[{rate.formula=\"1 + t\",to=2}]"]);
+    assert!(gone.is_moving(1.0) && !gone.is_moving(2.0), "what has ended moves no more");
     assert_eq!(still.lasting().unwrap()[90], 0.95);
     let dips = poured(&["source=[{rate.formula=\"1 - t\"}]"]);
     assert_eq!(dips.rate(2.0)[0], 0.0, "a rate below 0 later on counts as 0");
