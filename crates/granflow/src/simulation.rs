@@ -23,7 +23,7 @@ pub enum StepSize {
 pub enum Failure {
     /// A state became infinite or not a number.
     #[error(
-        "the state is not finite after step {step}, time {time}: take a smaller step, or a scheme that keeps depths positive; a rate that is not finite does it too"
+        "the state is not finite after step {step}, time {time}: take a smaller step, or a positive scheme (verfahren_1, balanced); on a table, rates that are finite"
     )]
     NotFinite {
         /// Steps done.
