@@ -55,7 +55,11 @@ struct Speed {
 }
 
 impl Speed {
-    fn measure<const D: usize, S: Scheme<D, f64>>(&self, name: &str, build: impl Fn() -> Simulation<D, S> + Sync) {
+    fn measure<const D: usize, S: Scheme<D, f64>>(
+        &self,
+        name: &str,
+        build: impl Fn() -> Simulation<D, S> + Sync,
+    ) {
         if !name.contains(&self.filter) {
             return;
         }
@@ -116,7 +120,8 @@ fn main() {
     for (name, second) in [("balanced terrain", false), ("balanced_2 terrain", true)] {
         speed.measure(name, || {
             let sheet = grid::<2>(n, Boundary::Nothing);
-            let (height, cell) = (|x: f64, y: f64| 0.3 * x + 0.02 * (9.0 * x).sin() * (7.0 * y).cos(), 1.0 / n as f64);
+            let (height, cell) =
+                (|x: f64, y: f64| 0.3 * x + 0.02 * (9.0 * x).sin() * (7.0 * y).cos(), 1.0 / n as f64);
             let centre = |k: usize| (k as f64 + 0.5) * cell - 0.5;
             let values = (0..n * n).map(|k| height(centre(k % n), centre(k / n))).collect();
             let bed = Raster { columns: n, rows: n, west: -0.5, south: -0.5, cell, values, crs: None };
@@ -132,7 +137,14 @@ fn main() {
     speed.measure("balanced 1-D", || {
         let line = grid::<1>(100_000, Boundary::Open);
         let start = move |index| cap(line.centre(index));
-        Simulation::new(Balanced::first(FRICTION, 1e-9), line, EULER, StepSize::Courant(0.4), |_| plane::<1>(), start)
+        Simulation::new(
+            Balanced::first(FRICTION, 1e-9),
+            line,
+            EULER,
+            StepSize::Courant(0.4),
+            |_| plane::<1>(),
+            start,
+        )
     });
     let table = |scheme: HadelerKuttler, stages| {
         let sheet = grid::<2>(n, Boundary::Nothing);

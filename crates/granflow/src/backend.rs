@@ -21,7 +21,7 @@ pub(crate) use tally::Count;
 pub use tally::Tally;
 
 /// Most cells side by side that are computed in one go, with the neighbour at each end.
-pub(crate) const STRIP: usize = 32;
+pub(crate) const STRIP: usize = 128;
 
 /// Largest extent of a tile along x and y. At least 6, the reach of a two-stage step; two short of whole vectors, as the
 /// edges of the two neighbours along x are needed too.

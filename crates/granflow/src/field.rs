@@ -56,10 +56,13 @@ impl View<'_> {
     #[inline(always)]
     pub(crate) unsafe fn get<L: Wide, P: Parts<L>>(&self, place: usize) -> P {
         const { assert!(P::COUNT <= MOST && L::WIDTH <= crate::grid::ROOM) };
-        P::gather(#[inline(always)] |k| {
-            debug_assert!(place + L::WIDTH <= self.parts[k].len());
-            // SAFETY: as the caller promises; k < P::COUNT <= MOST.
-            unsafe { L::load(self.parts.get_unchecked(k).as_ptr().add(place)) }
-        })
+        P::gather(
+            #[inline(always)]
+            |k| {
+                debug_assert!(place + L::WIDTH <= self.parts[k].len());
+                // SAFETY: as the caller promises; k < P::COUNT <= MOST.
+                unsafe { L::load(self.parts.get_unchecked(k).as_ptr().add(place)) }
+            },
+        )
     }
 }

@@ -172,7 +172,6 @@ impl<S: Simd> Inside for With<S> {
     }
 }
 
-
 impl Instructions {
     /// Let `job` use them.
     pub(crate) fn run<J: Job>(self, job: J) -> J::Output {
@@ -184,7 +183,9 @@ impl Instructions {
                 job.run::<Pair<Lanes<Avx2>>>(With(level.as_avx2().expect("just seen")))
             }
             #[cfg(target_arch = "aarch64")]
-            (Instructions::Widest | Instructions::Narrow, Level::Neon(simd)) => job.run::<Pair<Lanes<Neon>>>(With(simd)),
+            (Instructions::Widest | Instructions::Narrow, Level::Neon(simd)) => {
+                job.run::<Pair<Lanes<Neon>>>(With(simd))
+            }
             _ => job.run::<f64>(Anywhere),
         }
     }

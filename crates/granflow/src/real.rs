@@ -109,7 +109,8 @@ pub trait Real:
             Self::of(P[8]) * z + Self::of(P[9]),
             Self::of(P[10]) * z + Self::of(P[11]),
         ];
-        let p = (pair[0] * z2 + pair[1]) * (z4 * z4) + ((pair[2] * z2 + pair[3]) * z4 + (pair[4] * z2 + pair[5]));
+        let p =
+            (pair[0] * z2 + pair[1]) * (z4 * z4) + ((pair[2] * z2 + pair[3]) * z4 + (pair[4] * z2 + pair[5]));
         let rest = s * (z * p);
         // pi/2 - 2 (s + rest), the large terms first; the last constant is what f64 cuts off from pi/2
         let far = (Self::of(std::f64::consts::FRAC_PI_2) - (s + s))

@@ -411,7 +411,12 @@ impl<const D: usize, S: Scheme<D, f64>> Simulation<D, S> {
                     let cell = Cell { state: self.now.get(place), ground: self.grounds.get(place) };
                     let inside = !self.scheme.outside(&cell.ground);
                     let rate = self.scheme.rate(&cell, &self.spacing);
-                    count.watch(1 + (i - tile.columns[0]) % (STRIP - 2), inside, rate, &self.scheme.watch(&cell));
+                    count.watch(
+                        1 + (i - tile.columns[0]) % (STRIP - 2),
+                        inside,
+                        rate,
+                        &self.scheme.watch(&cell),
+                    );
                 }
             }
             // Nothing is known of the change before the next step.

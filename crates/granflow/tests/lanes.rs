@@ -76,7 +76,9 @@ fn rough<const D: usize>(
         let lot = (dice.roll() * 210.0) as usize;
         match lot {
             _ if positive && index[0] > cells[0] / 2 => Flow::still(0.0),
-            _ if positive && lot.is_multiple_of(7) => Flow::still(if lot.is_multiple_of(2) { 0.0 } else { 1e-7 }),
+            _ if positive && lot.is_multiple_of(7) => {
+                Flow::still(if lot.is_multiple_of(2) { 0.0 } else { 1e-7 })
+            }
             _ if lot.is_multiple_of(5) => Flow::still(h),
             _ => Flow { h, q: u.map(|u| h * u) },
         }
@@ -97,7 +99,9 @@ fn on_planes<const D: usize>(cells: [usize; D], ends: Boundary) {
         compare(&format!("verfahren_{}", number + 1), || {
             let scheme = Kinetic { friction, ..scheme };
             // A bed that varies, so that no tile takes the ground of its first cell for all.
-            let ground = |index: [usize; D]| plane::<D>(tilt.map(|s: f64| s + 1e-3 * index[0] as f64 / cells[0] as f64), 0.4);
+            let ground = |index: [usize; D]| {
+                plane::<D>(tilt.map(|s: f64| s + 1e-3 * index[0] as f64 / cells[0] as f64), 0.4)
+            };
             Simulation::new(scheme, sheet, EULER, StepSize::Fixed(0.002), ground, rough(4, cells, false))
         });
     }
@@ -132,7 +136,8 @@ fn on_terrain<F: Friction>(name: &str, friction: F) {
     });
     let start = rough(5, sheet.cells, true);
     let number = |[i, j]: [usize; 2]| j * sheet.cells[0] + i;
-    let begin = |index: [usize; 2]| if grounds[number(index)].cos > 0.0 { start(index) } else { Flow::still(0.0) };
+    let begin =
+        |index: [usize; 2]| if grounds[number(index)].cos > 0.0 { start(index) } else { Flow::still(0.0) };
     for second in [false, true] {
         compare(name, || {
             let (scheme, stages, step) = match second {
@@ -161,7 +166,9 @@ fn on_tables<const D: usize>(cells: [usize; D]) {
         let inside = f64::from(u8::from(!beside && !hole));
         let free = (0..D).all(|k| index[k] > 0 && index[k] < last[k]) && !hole;
         Ground {
-            source: std::array::from_fn(|k| inside * if index[0] < cells[0] / 2 { 0.3 + 0.1 * k as f64 } else { 0.0 }),
+            source: std::array::from_fn(|k| {
+                inside * if index[0] < cells[0] / 2 { 0.3 + 0.1 * k as f64 } else { 0.0 }
+            }),
             bed: 0.01 * (0.7 * index[0] as f64).sin(),
             inside,
             weight: f64::from(u8::from(free)),
@@ -176,9 +183,12 @@ fn on_tables<const D: usize>(cells: [usize; D]) {
         Pile { u: u * ground.weight, v: if dice.roll() < 0.3 { 0.0 } else { v * ground.inside } }
     };
     let third = HadelerKuttler { slopes: Slopes::Adaptive { exponent: 3.0 } };
-    for (name, scheme) in
-        [("first order", FIRST_ORDER), ("second order", SECOND_ORDER), ("adaptive", ADAPTIVE), ("adaptive, 3", third)]
-    {
+    for (name, scheme) in [
+        ("first order", FIRST_ORDER),
+        ("second order", SECOND_ORDER),
+        ("adaptive", ADAPTIVE),
+        ("adaptive, 3", third),
+    ] {
         let stages = if scheme.slopes == Slopes::None { EULER } else { SSP_RK2 };
         compare(name, || Simulation::new(scheme, table, stages, StepSize::Courant(0.4), ground, start));
     }

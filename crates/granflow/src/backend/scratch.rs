@@ -25,16 +25,22 @@ impl<const MOST: usize> Row<MOST> {
         debug_assert!(at >= -1 && at + L::WIDTH as isize <= (STRIP + ROOM) as isize);
         let place = (ROOM as isize + at) as usize;
         // SAFETY: inside the row, and as the caller promises.
-        P::gather(#[inline(always)] |k| unsafe { L::load(self.0.get_unchecked(k).as_ptr().cast::<f64>().add(place)) })
+        P::gather(
+            #[inline(always)]
+            |k| unsafe { L::load(self.0.get_unchecked(k).as_ptr().cast::<f64>().add(place)) },
+        )
     }
     #[inline(always)]
     pub(super) fn put<L: Wide, P: Parts<L>>(&mut self, at: usize, value: P) {
         const { assert!(P::COUNT <= MOST) };
         debug_assert!(at + L::WIDTH <= STRIP);
         // SAFETY: inside the row.
-        value.scatter(#[inline(always)] |k, part| unsafe {
-            part.store(self.0.get_unchecked_mut(k).as_mut_ptr().cast::<f64>().add(ROOM + at));
-        });
+        value.scatter(
+            #[inline(always)]
+            |k, part| unsafe {
+                part.store(self.0.get_unchecked_mut(k).as_mut_ptr().cast::<f64>().add(ROOM + at));
+            },
+        );
     }
     /// Let the place before the first be as the first, and those behind `end` be 0.
     #[inline(always)]

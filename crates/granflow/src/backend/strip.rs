@@ -3,9 +3,9 @@
 use super::scratch::{MOST_FLUX, Row, Scratch};
 use super::tally::{Count, Tally};
 use super::{Leak, MOST_PARTS, STRIP, Sheet, Sweep, Tile};
+use crate::field::MOST;
 use crate::lanes::{MOST_LANES, Wide, expect};
 use crate::scheme::{Cell, Faces, Parts, Scheme, Side, Spacing, Watch, Window};
-use crate::field::MOST;
 
 /// A tile under way.
 pub(super) struct Strip<'a, const D: usize, L: Wide, T: Scheme<D, L>> {
@@ -85,7 +85,10 @@ impl<'a, const D: usize, L: Wide, T: Scheme<D, L>> Strip<'a, D, L, T> {
         // SAFETY: the tiles and their ghosts lie inside the layout, which ends with room for a vector.
         unsafe {
             let ground = match self.even {
-                Some(even) => T::Ground::gather(#[inline(always)] |k| L::load(even.0.get_unchecked(k).as_ptr())),
+                Some(even) => T::Ground::gather(
+                    #[inline(always)]
+                    |k| L::load(even.0.get_unchecked(k).as_ptr()),
+                ),
                 None => grounds.get(place),
             };
             Cell { state: from.get(place), ground }
@@ -106,7 +109,14 @@ impl<'a, const D: usize, L: Wide, T: Scheme<D, L>> Strip<'a, D, L, T> {
             let ahead = if D > 1 { 1 } else { 0 };
             for number in first - ahead..end + ahead {
                 let j = number - ahead;
-                self.row(strip, number, first, &self.sweep.leaks[tile.leaks.clone()], &mut scratch, &mut count);
+                self.row(
+                    strip,
+                    number,
+                    first,
+                    &self.sweep.leaks[tile.leaks.clone()],
+                    &mut scratch,
+                    &mut count,
+                );
                 if D > 1 && j + 1 == tile.rows[1] as isize {
                     finish(&mut tallies, std::mem::replace(&mut count, Count::new()));
                     tile = tiles.next().unwrap_or(tile);
@@ -143,14 +153,19 @@ impl<'a, const D: usize, L: Wide, T: Scheme<D, L>> Strip<'a, D, L, T> {
         let [even, odd] = edges;
         let (above, row) = if (number - first) % 2 == 0 { (even, odd) } else { (odd, even) };
         let place = start(number);
-        self.expect(start(number + 2), start(number), end);
         for m in vectors() {
+            self.expect(start(number + 2) + m, start(number) + m);
             above.put(m, self.scheme.reconstruct(&Around { strip: self, place: place + m }));
         }
         above.mend(if number <= first { T::Edges::COUNT } else { 0 }, end);
         if number < first {
             return;
         }
+        // They are sorted by rows.
+        let leaks = {
+            let below = |up_to: isize| leaks.partition_point(|leak| (leak.cell[1] as isize) < up_to);
+            &leaks[below(number - ahead)..below(number - ahead + 1)]
+        };
         let row = if D > 1 { &*row } else { &*above };
         let (above, j) = (&*above, number - ahead);
         let [low, high] = corners;
@@ -170,7 +185,7 @@ impl<'a, const D: usize, L: Wide, T: Scheme<D, L>> Strip<'a, D, L, T> {
         }
         high.mend(T::Corner::COUNT, end);
         if !leaks.is_empty() {
-            self.book(count, leaks, columns, j, [(0, 0, across, 0), (0, 1, across, 1), (1, 0, below, 0)]);
+            self.book(count, leaks, columns, [(0, 0, across, 0), (0, 1, across, 1), (1, 0, below, 0)]);
         }
         let low = if D > 1 { &*low } else { &*high };
         for m in vectors() {
@@ -194,7 +209,7 @@ impl<'a, const D: usize, L: Wide, T: Scheme<D, L>> Strip<'a, D, L, T> {
             }
         }
         if !leaks.is_empty() {
-            self.book(count, leaks, columns, j, [(1, 1, below, 0)]);
+            self.book(count, leaks, columns, [(1, 1, below, 0)]);
         }
         corners.swap(0, 1);
     }
@@ -204,13 +219,14 @@ impl<'a, const D: usize, L: Wide, T: Scheme<D, L>> Strip<'a, D, L, T> {
         self.to[k].as_ref().expect("a state has as many sheets as parts")
     }
 
-    /// Ask for the cells that will be read from `next` on and written from `place` on: the rows of a tile are too short
+    /// Ask for the vector that will be read at `next` and the one that will be written at `place`: the rows of a tile are too short
     /// for the processor to notice by itself where the next one begins.
     #[inline(always)]
-    fn expect(&self, next: usize, place: usize, cells: usize) {
+    fn expect(&self, next: usize, place: usize) {
+        /// Numbers in a line of the cache.
         const LINE: usize = 8;
         let Sweep { from, grounds, .. } = self.sweep;
-        for m in (0..cells).step_by(LINE) {
+        for m in (0..L::WIDTH).step_by(LINE) {
             for k in 0..T::State::COUNT {
                 expect(from.part(k).as_ptr().wrapping_add(next + m));
                 expect(self.sheet(k).at(place + m));
@@ -248,24 +264,38 @@ impl<'a, const D: usize, L: Wide, T: Scheme<D, L>> Strip<'a, D, L, T> {
         let mut old = here.state;
         if self.sweep.keep > 0.0 {
             // SAFETY: as the caller promises.
-            old = T::State::gather(#[inline(always)] |k| unsafe { self.sheet(k).get(place, live) });
+            old = T::State::gather(
+                #[inline(always)]
+                |k| unsafe { self.sheet(k).get(place, live) },
+            );
             new = self.scheme.average(L::of(self.sweep.keep), &old, &new);
         }
         let mut finite = zero;
-        let mut same = self.scheme.rests(edges);
+        let mut differs = L::zero().lt(zero);
         let (mut before, mut input) = ([zero; MOST_PARTS], [zero; MOST_PARTS]);
-        old.scatter(#[inline(always)] |k, value| before[k] = value);
-        here.state.scatter(#[inline(always)] |k, value| input[k] = value);
-        new.scatter(#[inline(always)] |k, value| {
-            // SAFETY: as the caller promises.
-            unsafe { self.sheet(k).put(place, live, value) };
-            finite = finite + value * zero;
-            same = same & value.same(input[k]);
-            if self.sweep.last {
-                count.change(k, live, (value - before[k]).abs());
-            }
-        });
-        count.quiet &= !L::any(live & !same);
+        old.scatter(
+            #[inline(always)]
+            |k, value| before[k] = value,
+        );
+        here.state.scatter(
+            #[inline(always)]
+            |k, value| input[k] = value,
+        );
+        new.scatter(
+            #[inline(always)]
+            |k, value| {
+                // SAFETY: as the caller promises.
+                unsafe { self.sheet(k).put(place, live, value) };
+                finite = finite + value * zero;
+                differs = differs | !value.same(input[k]);
+                if self.sweep.last {
+                    count.change(k, live, (value - before[k]).abs());
+                }
+            },
+        );
+        if count.quiet {
+            count.quiet = !L::any(live & (differs | !self.scheme.rests(edges)));
+        }
         count.finite &= !L::any(live & !finite.same(zero));
         if self.sweep.last {
             let cell = Cell { state: new, ground: here.ground };
@@ -309,7 +339,7 @@ impl<'a, const D: usize, L: Wide, T: Scheme<D, L>> Strip<'a, D, L, T> {
         }
     }
 
-    /// Book what passes the ways out of row `j`: of each kind of face (axis, side) the flux stands in a row of the
+    /// Book what passes the ways out of a row: of each kind of face (axis, side) the flux stands in a row of the
     /// scratch, moved by so many cells.
     #[inline(always)]
     fn book<const N: usize>(
@@ -317,10 +347,9 @@ impl<'a, const D: usize, L: Wide, T: Scheme<D, L>> Strip<'a, D, L, T> {
         count: &mut Count<L>,
         leaks: &[Leak],
         columns: [usize; 2],
-        j: isize,
         kinds: [(usize, u8, &Row<MOST_FLUX>, isize); N],
     ) {
-        for leak in leaks.iter().filter(|leak| leak.cell[1] as isize == j) {
+        for leak in leaks {
             let column = leak.cell[0] as usize;
             if !(columns[0]..columns[1]).contains(&column) {
                 continue;

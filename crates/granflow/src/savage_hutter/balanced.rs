@@ -139,7 +139,8 @@ impl<const D: usize, R: Real, P: Spread<D, R>, T> Edges<D, R, P, T> {
     /// The share of the density going out through a face that the mean flow carries.
     #[inline(always)]
     fn carried(&self, axis: usize, towards: Towards) -> R {
-        let flow = self.spread[axis].depth(towards, self.h) * self.spread[axis].velocity(towards, self.u)[axis];
+        let flow =
+            self.spread[axis].depth(towards, self.h) * self.spread[axis].velocity(towards, self.u)[axis];
         let outward = if towards == Towards::Lo { -flow } else { flow };
         let mass = self.half[axis][towards as usize].mass;
         let none = mass.same(R::zero());
@@ -175,7 +176,7 @@ impl<F: Friction, B: Copy, const LIMITED: bool> Balanced<F, B, LIMITED> {
     where
         B: Bed<D, R>,
     {
-        h.lt(R::of(self.film)) | h.le(R::zero()) | bed.outside()
+        h.lt(R::of(self.film.max(f64::MIN_POSITIVE))) | bed.outside()
     }
 
     /// Largest difference du of the velocity u + du, u - du at a cell's two faces, depths h - dh and h + dh there,
@@ -230,6 +231,11 @@ impl<F: Friction, B: Copy, const LIMITED: bool> Balanced<F, B, LIMITED> {
         let h = state.h;
         let lo = ground.rise(axis, Towards::Lo, &a.ground, h, a.state.h, dx);
         let hi = ground.rise(axis, Towards::Hi, &b.ground, h, b.state.h, dx);
+        let weight_lo = ground.weight(&a.ground, h, a.state.h);
+        let weight_hi = ground.weight(&b.ground, h, b.state.h);
+        if !R::any(self.is_void(a.state.h, &a.ground) | self.is_void(b.state.h, &b.ground)) {
+            return ([lo, hi], [weight_lo, weight_hi]);
+        }
         let (out_lo, out_hi) = (a.ground.outside(), b.ground.outside());
         let zero = R::zero();
         let (lo, hi) = (R::select(out_lo, zero, lo), R::select(out_hi, zero, hi));
@@ -237,9 +243,7 @@ impl<F: Friction, B: Copy, const LIMITED: bool> Balanced<F, B, LIMITED> {
         // Outside the data the surface goes on as it comes; from one side only, there is no difference.
         let bare_lo = R::select(out_lo, -bare_hi, bare_lo);
         let bare_hi = R::select(out_hi, -bare_lo, bare_hi);
-        let weight_lo = R::select(out_lo, zero, ground.weight(&a.ground, h, a.state.h));
-        let weight_hi = R::select(out_hi, zero, ground.weight(&b.ground, h, b.state.h));
-        ([bare_lo, bare_hi], [weight_lo, weight_hi])
+        ([bare_lo, bare_hi], [R::select(out_lo, zero, weight_lo), R::select(out_hi, zero, weight_hi)])
     }
 }
 
@@ -376,7 +380,9 @@ where
             });
             edges.held = held;
         }
-        if !R::any(!(edges.held | void)) {
+        // A held cell and a void one give nothing.
+        let closed = edges.held | void;
+        if !R::any(!closed) {
             return edges;
         }
         unroll!(axis in D => {
@@ -388,6 +394,11 @@ where
                 edges.half[axis] = [lo, hi];
             }
         });
+        if R::any(closed) {
+            unroll!(axis in D => {
+                edges.half[axis] = each!(side => edges.half[axis][side].only(!closed));
+            });
+        }
         edges
     }
 
@@ -395,13 +406,10 @@ where
     fn flux(&self, axis: usize, left: &Self::Edges, right: &Self::Edges) -> Flux<D, R> {
         let (zero, one) = (R::zero(), R::of(1.0));
         let (half_a, half_b) = (left.half[axis][1], right.half[axis][0]);
-        // A held cell and a void one give nothing.
-        let gives_a = !(left.held | left.void);
-        let gives_b = !(right.held | right.void);
+        let closed = (left.held | left.void) & (right.held | right.void);
         let held = left.held | right.held;
         let mut flux = Flux { mass: zero, left: [zero; D], right: [zero; D], held };
-        if R::any(gives_a | gives_b) {
-            let (half_a, half_b) = (half_a.only(gives_a), half_b.only(gives_b));
+        if R::any(!closed) {
             let u_a = left.spread[axis].velocity(Towards::Hi, left.u);
             let u_b = right.spread[axis].velocity(Towards::Lo, right.u);
             let both = half_a.push + half_b.push;
@@ -491,9 +499,11 @@ where
         let speed = bed.square(old).sqrt();
         let law = self.friction.resistance(thickness, speed, bed.load(old), bed.weight_at_rest());
         let still = edges.still;
-        let slack = R::of(Self::SLACK);
-        let resting = law.holding * slack + bed.rounding(h, largest(per));
-        let dry = R::select(still, resting, law.dry);
+        let mut dry = law.dry;
+        if R::any(still) {
+            let resting = law.holding * R::of(Self::SLACK) + bed.rounding(h, largest(per));
+            dry = R::select(still, resting, dry);
+        }
         let size = bed.square(moved).sqrt();
         let loss = dt * depth * dry;
         let left = size - loss;
