@@ -25,6 +25,15 @@ fn finish<'t, L: Wide>(tallies: &mut impl Iterator<Item = &'t mut Tally>, count:
     *tallies.next().expect("a tally for every tile") = count.finish();
 }
 
+/// The cells of a strip that are updated side by side.
+struct Vector<L: Wide> {
+    /// The first one's column in the strip, and its place in the field.
+    column: usize,
+    place: usize,
+    /// Which of them are ours.
+    live: L::Mask,
+}
+
 /// One ground, once for each lane.
 #[repr(align(64))]
 struct Even([[f64; MOST_LANES]; MOST]);
@@ -204,7 +213,8 @@ impl<'a, const D: usize, L: Wide, T: Scheme<D, L>> Strip<'a, D, L, T> {
                 if j >= first {
                     let live = L::within(1_usize.saturating_sub(m)..(width + 1).saturating_sub(m));
                     let corners = [[low.get(at), low.get(at + 1)], [high.get(at), high.get(at + 1)]];
-                    self.update(count, m, start(j) + m, live, &edges, &faces, &corners);
+                    let vector = Vector { column: m, place: start(j) + m, live };
+                    self.update(count, vector, &edges, &faces, &corners);
                 }
             }
         }
@@ -239,17 +249,15 @@ impl<'a, const D: usize, L: Wide, T: Scheme<D, L>> Strip<'a, D, L, T> {
         }
     }
 
-    /// Update the cells of `live` from `place` on; the first of them lies in `column` of the strip.
+    /// Update the cells of a vector.
     ///
     /// # Safety
-    /// They belong to this tile.
+    /// They belong to these tiles.
     #[inline(always)]
     unsafe fn update(
         &self,
         count: &mut Count<L>,
-        column: usize,
-        place: usize,
-        live: L::Mask,
+        Vector { column, place, live }: Vector<L>,
         edges: &T::Edges,
         faces: &[Faces<T::Flux>; D],
         corners: &[[T::Corner; 2]; 2],
