@@ -16,24 +16,29 @@ use crate::scheme::{Scheme, Work};
 use rayon::prelude::*;
 use std::marker::PhantomData;
 use std::ops::Range;
-use strip::Strip;
+use strip::{Desk, Strip};
 pub(crate) use tally::Count;
 pub use tally::Tally;
 
 /// Most cells side by side that are computed in one go, with the neighbour at each end.
-pub(crate) const STRIP: usize = 32;
+pub(crate) const STRIP: usize = 128;
 
-/// Largest extent of a tile along x and y. At least 6, the reach of a two-stage step; two short of whole vectors, as the
-/// edges of the two neighbours along x are needed too.
+/// Largest extent of a tile along x and y. At least 6, the reach of a two-stage step.
 pub const fn tile_size(dimensions: usize) -> [usize; 2] {
-    if dimensions == 1 { [16 * (STRIP - 2), 1] } else { [STRIP - 2, 8] }
+    if dimensions == 1 { [STRIP - 2, 1] } else { [(STRIP - 2) / 6, 16] }
 }
 
-/// Most tiles above each other that one thread computes in one go: the rows between them are then read once.
+/// Most rows of tiles that one thread computes in one go: the rows between them are then read once.
 pub const MOST_TILES: usize = 4;
 
-/// Tiles above each other that are awake, by their numbers' places in the list.
-pub type Run = Range<usize>;
+/// A rectangle of tiles that are awake, row by row in the list of them.
+#[derive(Clone, Debug)]
+pub struct Run {
+    /// Places in the list.
+    pub awake: Range<usize>,
+    /// How many lie side by side.
+    pub across: usize,
+}
 
 /// The five ways out of the domain, as the ledger books them.
 pub const EXITS: [&str; 5] = ["left", "right", "bottom", "top", "nodata"];
@@ -188,13 +193,20 @@ impl<const D: usize, L: Wide, S: Sync, I: Inside> Work<D, L> for OnLanes<Tiles<'
     type Output = ();
     fn with<T: Scheme<D, L>>(self, scheme: &T) {
         let OnLanes { tiles: Tiles { sweep, tiles, awake, runs, to, maps, tallies, .. }, inside } = self;
-        runs.par_iter().for_each(|run| {
-            let tiles = awake[run.clone()].iter().map(|number| &tiles[*number as usize]);
-            // SAFETY: every tile belongs to one run.
-            let tallies = unsafe { tallies.slice(run.clone()) };
+        let chunk = runs.len().div_ceil(16 * rayon::current_num_threads()).max(1);
+        runs.par_chunks(chunk).for_each(|runs| {
             inside.call(
                 #[inline(always)]
-                || Strip::<D, L, T>::run(sweep, scheme, tiles, &to, maps.as_ref(), tallies),
+                || {
+                    let mut desk = Desk::new();
+                    for Run { awake: range, across } in runs {
+                        let tiles = awake[range.clone()].iter().map(|number| &tiles[*number as usize]);
+                        // SAFETY: every tile belongs to one run.
+                        let tallies = unsafe { tallies.slice(range.clone()) };
+                        let to = (&to, maps.as_ref());
+                        Strip::<D, L, T>::run(sweep, scheme, tiles, *across, to, tallies, &mut desk);
+                    }
+                },
             );
         });
     }

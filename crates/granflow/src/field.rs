@@ -1,7 +1,6 @@
 //! Cell values as struct of arrays.
 
 use crate::grid::Layout;
-use crate::lanes::Wide;
 use crate::scheme::Parts;
 
 /// One padded array per number of a cell value.
@@ -49,20 +48,8 @@ impl View<'_> {
     pub fn part(&self, k: usize) -> &[f64] {
         self.parts[k]
     }
-    /// The values from `place` on.
-    ///
-    /// # Safety
-    /// `place` is that of a cell or ghost of the field's layout, and the field holds values of type `P`.
-    #[inline(always)]
-    pub(crate) unsafe fn get<L: Wide, P: Parts<L>>(&self, place: usize) -> P {
-        const { assert!(P::COUNT <= MOST && L::WIDTH <= crate::grid::ROOM) };
-        P::gather(
-            #[inline(always)]
-            |k| {
-                debug_assert!(place + L::WIDTH <= self.parts[k].len());
-                // SAFETY: as the caller promises; k < P::COUNT <= MOST.
-                unsafe { L::load(self.parts.get_unchecked(k).as_ptr().add(place)) }
-            },
-        )
+    /// Where the arrays begin.
+    pub(crate) fn starts(&self) -> [*const f64; MOST] {
+        self.parts.map(<[f64]>::as_ptr)
     }
 }

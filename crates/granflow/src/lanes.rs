@@ -77,8 +77,8 @@ pub(crate) trait Wide: Real {
     fn within(range: Range<usize>) -> Self::Mask;
     /// Holds in every place?
     fn all(mask: Self::Mask) -> bool;
-    /// How many places hold.
-    fn count(mask: Self::Mask) -> usize;
+    /// The places that hold, a bit each, the first the lowest.
+    fn bits(mask: Self::Mask) -> u64;
 }
 
 impl Wide for f64 {
@@ -110,8 +110,8 @@ impl Wide for f64 {
         mask
     }
     #[inline(always)]
-    fn count(mask: bool) -> usize {
-        usize::from(mask)
+    fn bits(mask: bool) -> u64 {
+        u64::from(mask)
     }
 }
 
@@ -185,6 +185,11 @@ impl Instructions {
             #[cfg(target_arch = "aarch64")]
             (Instructions::Widest | Instructions::Narrow, Level::Neon(simd)) => {
                 job.run::<Pair<Lanes<Neon>>>(With(simd))
+            }
+            // One cell at a time, with the one instruction for x y + z where the processor has it.
+            #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
+            (_, level) if level.as_avx2().is_some() => {
+                job.run::<f64>(With(level.as_avx2().expect("just seen")))
             }
             _ => job.run::<f64>(Anywhere),
         }
@@ -320,6 +325,22 @@ impl<S: Simd> Real for Lanes<S> {
     fn ln(self) -> Self {
         self.each(f64::ln)
     }
+    #[inline(always)]
+    fn mul_add(self, factor: Self, term: Self) -> Self {
+        Lanes(self.0.mul_add(factor.0, term.0))
+    }
+    /// On x86 the instruction is select(self < other) to the bit, zeros and what is not a number included.
+    #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
+    #[inline(always)]
+    fn min(self, other: Self) -> Self {
+        Lanes(self.0.min(other.0))
+    }
+    /// As `min`.
+    #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
+    #[inline(always)]
+    fn max(self, other: Self) -> Self {
+        Lanes(self.0.max(other.0))
+    }
 }
 
 impl<S: Simd> Wide for Lanes<S> {
@@ -354,7 +375,7 @@ impl<S: Simd> Wide for Lanes<S> {
         mask.0.all_true()
     }
     #[inline(always)]
-    fn count(mask: Where<S>) -> usize {
-        mask.0.to_bitmask().count_ones() as usize
+    fn bits(mask: Where<S>) -> u64 {
+        mask.0.to_bitmask()
     }
 }

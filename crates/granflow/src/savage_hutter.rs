@@ -84,7 +84,7 @@ impl<const D: usize, R: Real> Flow<D, R> {
         let moves = R::select(self.is_still(), R::zero(), square);
         Watch {
             volume: self.h,
-            speed: moves.sqrt(),
+            square: moves,
             energy: self.h * moves * R::of(0.5),
             thickness: bed.thickness(self.h),
             film: R::select(self.h.lt(film), R::of(1.0), R::zero()),

@@ -205,11 +205,13 @@ pub enum Boundary {
 /// `reconstruct` sees a cell and its neighbours, `flux` the edges of two cells, `corner` those of the cells around a
 /// corner, `update` a cell with what its faces and corners found. A Runge-Kutta method is a convex combination of such
 /// maps ([`crate::time`]).
-pub trait Scheme<const D: usize, R: Real>: Send + Sync {
+pub trait Scheme<const D: usize, R: Real>: Copy + Send + Sync {
     /// The unknowns of a cell.
     type State: Parts<R>;
     /// The static data of a cell.
     type Ground: Parts<R>;
+    /// What follows from a cell alone.
+    type Prime: Parts<R>;
     /// What a cell offers to its faces and remembers for its update.
     type Edges: Parts<R>;
     /// What passes a face, seen from both sides.
@@ -217,24 +219,33 @@ pub trait Scheme<const D: usize, R: Real>: Send + Sync {
     /// What is found at a corner of cells; `()` where a scheme needs none.
     type Corner: Parts<R>;
 
+    /// Runs end when the state changes slowly enough: the largest change of a step is kept.
+    const DRIFTS: bool = false;
+
     /// Let `work` have the same scheme on another scalar: states and grounds of the same parts in the same order.
     fn on<L: Real, W: Work<D, L>>(&self, work: W) -> W::Output;
 
+    /// What follows from a cell alone: the place for divisions and roots, which are computed ahead of what waits for them.
+    fn prime(&self, here: &Cell<Self::State, Self::Ground>) -> Self::Prime;
     /// What the cell in the middle of the window offers to its faces and corners.
-    fn reconstruct(&self, window: &impl Window<D, R, Self::State, Self::Ground>) -> Self::Edges;
+    fn reconstruct(
+        &self,
+        window: &impl Window<D, R, Self::State, Self::Ground>,
+        prime: &Self::Prime,
+    ) -> Self::Edges;
     /// What passes the face between `left` and `right` along `axis`.
     fn flux(&self, axis: usize, left: &Self::Edges, right: &Self::Edges) -> Self::Flux;
     /// What is found at a corner: `around[y][x]` are the cells below and above it, left and right of it; in one dimension
     /// the corner is the face, and both rows are the same.
     fn corner(&self, around: [[&Self::Edges; 2]; 2]) -> Self::Corner;
-    /// The state after `dt`; `corners[y][x]` are the cell's lower and upper ones, left and right.
+    /// The state after `dt` of the cell in the middle of the window; `corners[y][x]` are the cell's lower and upper ones,
+    /// left and right.
     fn update(
         &self,
-        here: &Cell<Self::State, Self::Ground>,
+        window: &impl Window<D, R, Self::State, Self::Ground>,
         edges: &Self::Edges,
         faces: &[Faces<Self::Flux>; D],
         corners: &[[Self::Corner; 2]; 2],
-        spacing: &Spacing<D, R>,
         dt: R,
     ) -> Self::State;
 
@@ -251,7 +262,7 @@ pub trait Scheme<const D: usize, R: Real>: Send + Sync {
     /// keep * old + (1 - keep) * new, without undoing an exact stop of `new`.
     fn average(&self, keep: R, old: &Self::State, new: &Self::State) -> Self::State;
     /// The cell rests by a proof of the scheme (or is dry): with neighbours at rest nothing will change here.
-    fn rests(&self, edges: &Self::Edges) -> R::Mask;
+    fn rests(&self, here: &Cell<Self::State, Self::Ground>) -> R::Mask;
     /// The cell lies outside the data and holds nothing that is computed.
     fn outside(&self, ground: &Self::Ground) -> R::Mask;
     /// Under which of the five exits the books put what passes from `here` to `there`, `way` being the one on that side;
@@ -285,8 +296,8 @@ pub trait Work<const D: usize, R: Real> {
 pub struct Watch<R> {
     /// Conserved volume per area.
     pub volume: R,
-    /// Speed along the bed.
-    pub speed: R,
+    /// Squared speed along the bed.
+    pub square: R,
     /// Kinetic energy per density and area, volume * speed^2 / 2.
     pub energy: R,
     /// Thickness normal to the bed.

@@ -96,6 +96,7 @@ pub struct Simulation<const D: usize, S: Scheme<D, f64>> {
     quiet: Vec<bool>,
     awake: Vec<u32>,
     runs: Vec<Run>,
+    waiting: Vec<bool>,
     found: Vec<Tally>,
     /// Summary maps, kept while present.
     pub maps: Option<Maps>,
@@ -155,6 +156,7 @@ impl<const D: usize, S: Scheme<D, f64>> Simulation<D, S> {
             quiet: vec![false; tiles.len()],
             awake: Vec::with_capacity(tiles.len()),
             runs: Vec::with_capacity(tiles.len()),
+            waiting: vec![false; tiles.len()],
             found: vec![Tally::NONE; tiles.len()],
             grounds: bed,
             maps: None,
@@ -393,7 +395,7 @@ impl<const D: usize, S: Scheme<D, f64>> Simulation<D, S> {
             let index = self.grid.index(number);
             let (place, watch) = (self.place(index), self.watch(index));
             maps.peak_thickness[place] = watch.thickness;
-            maps.peak_speed[place] = watch.speed;
+            maps.peak_speed[place] = watch.square.sqrt();
             if watch.volume > 0.0 && watch.film == 0.0 {
                 maps.arrival_time[place] = self.time;
             }
@@ -403,24 +405,20 @@ impl<const D: usize, S: Scheme<D, f64>> Simulation<D, S> {
 
     /// Rates and counts of the state as it stands (needed once, before the first step or after a restart).
     fn survey(&mut self) {
+        let mut count = Count::new();
         for (tile, tally) in self.tiles.iter().zip(&mut self.tallies) {
-            let mut count = Count::<f64>::new();
+            let width = tile.columns[1] - tile.columns[0];
             for j in tile.rows[0]..tile.rows[1] {
-                for i in tile.columns[0]..tile.columns[1] {
-                    let place = self.layout.place(i as isize, j as isize);
+                for k in 0..width {
+                    let place = self.layout.place((tile.columns[0] + k) as isize, j as isize);
                     let cell = Cell { state: self.now.get(place), ground: self.grounds.get(place) };
                     let inside = !self.scheme.outside(&cell.ground);
                     let rate = self.scheme.rate(&cell, &self.spacing);
-                    count.watch(
-                        1 + (i - tile.columns[0]) % (STRIP - 2),
-                        inside,
-                        rate,
-                        &self.scheme.watch(&cell),
-                    );
+                    count.watch::<f64>(k, inside, rate, &self.scheme.watch(&cell));
                 }
             }
             // Nothing is known of the change before the next step.
-            *tally = Tally { change: [f64::INFINITY; MOST_PARTS], ..count.finish() };
+            *tally = Tally { change: [f64::INFINITY; MOST_PARTS], ..count.finish(0..width) };
         }
     }
 
@@ -515,27 +513,40 @@ impl<const D: usize, S: Scheme<D, f64>> Simulation<D, S> {
         self.quiet.fill(false);
     }
 
-    /// Number the tiles that something can happen in, in runs of tiles above each other. The runs of a band of rows follow
-    /// each other: they share pages of memory.
+    /// Number the tiles that something can happen in, in rectangles: what is next to each other in memory is computed by one
+    /// thread, as long as there is enough for all of them.
     fn wake(&mut self) {
         self.awake.clear();
         self.runs.clear();
         let (across, up) = (self.across, self.tiles.len() / self.across);
-        for band in (0..up).step_by(MOST_TILES) {
+        let mut stirring = 0;
+        for y in 0..up {
             for x in 0..across {
-                let mut from = self.awake.len();
-                for y in band..up.min(band + MOST_TILES) {
-                    if self.stirs(x, y, across, up) {
-                        self.awake.push((y * across + x) as u32);
-                    } else if from < self.awake.len() {
-                        self.runs.push(from..self.awake.len());
-                        from = self.awake.len();
-                    }
-                }
-                if from < self.awake.len() {
-                    self.runs.push(from..self.awake.len());
-                }
+                let stirs = self.stirs(x, y, across, up);
+                self.waiting[y * across + x] = stirs;
+                stirring += usize::from(stirs);
             }
+        }
+        let wide = across.min((STRIP - 2) / tile_size(D)[0]);
+        let high = (stirring / (wide * 4 * rayon::current_num_threads())).clamp(1, MOST_TILES);
+        for number in 0..self.tiles.len() {
+            if !self.waiting[number] {
+                continue;
+            }
+            let columns = wide.min(across - number % across);
+            let width = (0..columns).take_while(|k| self.waiting[number + k]).count();
+            let from = self.awake.len();
+            let mut row = number;
+            for _ in 0..high {
+                let tiles = row..row + width;
+                if tiles.end > self.waiting.len() || !self.waiting[tiles.clone()].iter().all(|waits| *waits) {
+                    break;
+                }
+                self.waiting[tiles.clone()].fill(false);
+                self.awake.extend(tiles.map(|tile| tile as u32));
+                row += across;
+            }
+            self.runs.push(Run { awake: from..self.awake.len(), across: width });
         }
     }
 

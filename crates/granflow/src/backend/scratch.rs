@@ -1,6 +1,6 @@
 //! The rows that a strip is computed from, small enough for the first-level cache.
 
-use super::STRIP;
+use super::{MOST_PARTS, STRIP};
 use crate::lanes::{MOST_LANES, Wide};
 use crate::scheme::Parts;
 use std::mem::MaybeUninit;
@@ -30,10 +30,11 @@ impl<const MOST: usize> Row<MOST> {
             |k| unsafe { L::load(self.0.get_unchecked(k).as_ptr().cast::<f64>().add(place)) },
         )
     }
+    /// Put values, at most one vector behind the end.
     #[inline(always)]
     pub(super) fn put<L: Wide, P: Parts<L>>(&mut self, at: usize, value: P) {
         const { assert!(P::COUNT <= MOST) };
-        debug_assert!(at + L::WIDTH <= STRIP);
+        debug_assert!(at + L::WIDTH <= STRIP + ROOM);
         // SAFETY: inside the row.
         value.scatter(
             #[inline(always)]
@@ -52,13 +53,16 @@ impl<const MOST: usize> Row<MOST> {
     }
 }
 
-/// Most numbers of the edges, of the flux, of the corner of a scheme.
+/// Most numbers of the primes, of the edges, of the flux, of the corner of a scheme.
+pub(super) const MOST_PRIME: usize = 6;
 pub(super) const MOST_EDGES: usize = 40;
 pub(super) const MOST_FLUX: usize = 8;
 pub(super) const MOST_CORNER: usize = 1;
 
 /// The rows of a strip.
 pub(super) struct Scratch {
+    /// What follows from the cells of a row alone.
+    pub prime: Row<MOST_PRIME>,
     /// Two rows of edges: of the row that is updated and the one above.
     pub edges: [Row<MOST_EDGES>; 2],
     /// Through the lower faces along x of a row.
@@ -67,6 +71,8 @@ pub(super) struct Scratch {
     pub below: Row<MOST_FLUX>,
     /// At the lower left corners of a row, and of the row above.
     pub corners: [Row<MOST_CORNER>; 2],
+    /// The new states of a row.
+    pub fresh: Row<MOST_PARTS>,
 }
 
 impl Scratch {

@@ -1,28 +1,50 @@
 //! The inner loop: a strip of a tile, row by row, vector by vector.
 
-use super::scratch::{MOST_FLUX, Row, Scratch};
+use super::scratch::{Row, Scratch};
 use super::tally::{Count, Tally};
-use super::{Leak, MOST_PARTS, STRIP, Sheet, Sweep, Tile};
+use super::{EXITS, Leak, MOST_PARTS, Sheet, Sweep, Tile};
 use crate::field::MOST;
+use crate::grid::Layout;
 use crate::lanes::{MOST_LANES, Wide, expect};
 use crate::scheme::{Cell, Faces, Parts, Scheme, Side, Spacing, Watch, Window};
 
-/// A tile under way.
+/// Tiles under way. All by value: what the inner loop reads through a reference it would have to read anew after every
+/// number that it writes.
 pub(super) struct Strip<'a, const D: usize, L: Wide, T: Scheme<D, L>> {
-    sweep: &'a Sweep<'a, D>,
-    scheme: &'a T,
-    to: &'a [Option<Sheet<'a>>; MOST_PARTS],
+    layout: Layout,
+    scheme: T,
+    /// Where the numbers of the states and of the grounds begin.
+    from: [*const f64; MOST],
+    grounds: [*const f64; MOST],
+    /// All bits; none where one ground stands for all.
+    varied: usize,
+    to: [*mut f64; MOST_PARTS],
     maps: Option<&'a [Sheet<'a>; 4]>,
+    leaks: &'a [Leak],
     spacing: Spacing<D, L>,
     dt: L,
-    /// Where the ground is the same everywhere it is read from here.
-    even: Option<&'a Even>,
+    keep: f64,
+    last: bool,
+    time: f64,
 }
 
-/// Put a tally where the next one belongs.
-#[inline(always)]
-fn finish<'t, L: Wide>(tallies: &mut impl Iterator<Item = &'t mut Tally>, count: Count<L>) {
-    *tallies.next().expect("a tally for every tile") = count.finish();
+/// What the tiles of one thread are computed with.
+pub(super) struct Desk {
+    scratch: Scratch,
+    count: Count,
+    ground: [Lane; MOST],
+}
+
+/// One number for all lanes.
+#[derive(Clone, Copy)]
+#[repr(align(64))]
+struct Lane([f64; MOST_LANES]);
+
+impl Desk {
+    #[inline(always)]
+    pub(super) fn new() -> Self {
+        Desk { scratch: Scratch::new(), count: Count::new(), ground: [Lane([0.0; MOST_LANES]); MOST] }
+    }
 }
 
 /// The cells of a strip that are updated side by side.
@@ -34,10 +56,6 @@ struct Vector<L: Wide> {
     live: L::Mask,
 }
 
-/// One ground, once for each lane.
-#[repr(align(64))]
-struct Even([[f64; MOST_LANES]; MOST]);
-
 /// The cells around one and around those that share its vector.
 struct Around<'a, const D: usize, L: Wide, T: Scheme<D, L>> {
     strip: &'a Strip<'a, D, L, T>,
@@ -47,7 +65,7 @@ struct Around<'a, const D: usize, L: Wide, T: Scheme<D, L>> {
 impl<const D: usize, L: Wide, T: Scheme<D, L>> Window<D, L, T::State, T::Ground> for Around<'_, D, L, T> {
     #[inline(always)]
     fn at(&self, offset: [isize; D]) -> Cell<T::State, T::Ground> {
-        self.strip.cell(self.strip.sweep.layout.moved(self.place, offset))
+        self.strip.cell(self.strip.layout.moved(self.place, offset))
     }
     #[inline(always)]
     fn spacing(&self) -> &Spacing<D, L> {
@@ -56,134 +74,193 @@ impl<const D: usize, L: Wide, T: Scheme<D, L>> Window<D, L, T::State, T::Ground>
 }
 
 impl<'a, const D: usize, L: Wide, T: Scheme<D, L>> Strip<'a, D, L, T> {
-    /// Compute tiles that lie above each other.
+    /// Compute a rectangle of tiles, `across` side by side, row by row; leave a tally each.
     #[inline(always)]
     pub(super) fn run<'t>(
         sweep: &Sweep<D>,
         scheme: &T,
         tiles: impl Iterator<Item = &'t Tile> + Clone,
-        to: &[Option<Sheet>; MOST_PARTS],
-        maps: Option<&[Sheet; 4]>,
+        across: usize,
+        (to, maps): (&[Option<Sheet>; MOST_PARTS], Option<&[Sheet; 4]>),
         tallies: &mut [Tally],
+        desk: &mut Desk,
     ) {
         const { assert!(T::State::COUNT <= MOST_PARTS && T::Ground::COUNT <= MOST) };
         let Some(Tile { columns, rows, .. }) = tiles.clone().next() else { return };
-        let mut even = Even([[0.0; MOST_LANES]; MOST]);
-        let is_even = tiles.clone().all(|tile| tile.even);
-        if is_even {
-            let place = sweep.layout.place(columns[0] as isize, rows[0] as isize);
-            for (k, lanes) in even.0.iter_mut().take(T::Ground::COUNT).enumerate() {
-                *lanes = [sweep.grounds.part(k)[place]; MOST_LANES];
+        let even = tiles.clone().all(|tile| tile.even);
+        let place = sweep.layout.place(columns[0] as isize, rows[0] as isize);
+        let mut grounds = sweep.grounds.starts();
+        if even {
+            for (start, lanes) in grounds.iter_mut().zip(&mut desk.ground).take(T::Ground::COUNT) {
+                // SAFETY: the cell lies inside the layout.
+                *lanes = Lane([unsafe { *start.add(place) }; MOST_LANES]);
+                *start = lanes.0.as_ptr();
             }
         }
         let strip = Strip {
-            sweep,
-            scheme,
-            to,
+            layout: sweep.layout,
+            scheme: *scheme,
+            from: sweep.from.starts(),
+            grounds,
+            varied: if even { 0 } else { usize::MAX },
+            to: to.each_ref().map(|sheet| sheet.as_ref().map_or(std::ptr::null_mut(), |sheet| sheet.start)),
             maps,
+            leaks: sweep.leaks,
             spacing: Spacing::new(sweep.size),
             dt: L::of(sweep.dt),
-            even: is_even.then_some(&even),
+            keep: sweep.keep,
+            last: sweep.last,
+            time: sweep.time,
         };
-        strip.sweep(tiles, tallies);
+        strip.sweep(tiles, across, tallies, &mut desk.scratch, &mut desk.count);
     }
 
     #[inline(always)]
     fn cell(&self, place: usize) -> Cell<T::State, T::Ground> {
-        let Sweep { from, grounds, .. } = self.sweep;
         // SAFETY: the tiles and their ghosts lie inside the layout, which ends with room for a vector.
+        let state = unsafe {
+            T::State::gather(
+                #[inline(always)]
+                |k| L::load(self.from.get_unchecked(k).add(place)),
+            )
+        };
+        Cell { state, ground: self.ground(place) }
+    }
+
+    #[inline(always)]
+    fn ground(&self, place: usize) -> T::Ground {
+        // SAFETY: as in `cell`.
         unsafe {
-            let ground = match self.even {
-                Some(even) => T::Ground::gather(
-                    #[inline(always)]
-                    |k| L::load(even.0.get_unchecked(k).as_ptr()),
-                ),
-                None => grounds.get(place),
-            };
-            Cell { state: from.get(place), ground }
+            T::Ground::gather(
+                #[inline(always)]
+                |k| L::load(self.grounds.get_unchecked(k).add(place & self.varied)),
+            )
         }
     }
 
-    /// Compute the tiles, from the lowest row to the highest; a tile of one dimension strip by strip.
+    /// Compute the tiles from the lowest row to the highest.
     #[inline(always)]
-    fn sweep<'t>(&self, mut tiles: impl Iterator<Item = &'t Tile> + Clone, tallies: &mut [Tally]) {
-        let (Some(highest), Some(mut tile)) = (tiles.clone().last(), tiles.next()) else { return };
-        let (columns, first, end) = (tile.columns, tile.rows[0] as isize, highest.rows[1] as isize);
-        let mut tallies = tallies.iter_mut();
-        let mut count = Count::new();
-        let mut scratch = Scratch::new();
-        for from in (columns[0]..columns[1]).step_by(STRIP - 2) {
-            let strip = [from, columns[1].min(from + STRIP - 2)];
-            // In one dimension a row has all it needs; in two the one above comes first.
-            let ahead = if D > 1 { 1 } else { 0 };
-            for number in first - ahead..end + ahead {
-                let j = number - ahead;
-                self.row(
-                    strip,
-                    number,
-                    first,
-                    &self.sweep.leaks[tile.leaks.clone()],
-                    &mut scratch,
-                    &mut count,
-                );
-                if D > 1 && j + 1 == tile.rows[1] as isize {
-                    finish(&mut tallies, std::mem::replace(&mut count, Count::new()));
-                    tile = tiles.next().unwrap_or(tile);
+    fn sweep<'t>(
+        &self,
+        tiles: impl Iterator<Item = &'t Tile> + Clone,
+        across: usize,
+        tallies: &mut [Tally],
+        scratch: &mut Scratch,
+        count: &mut Count,
+    ) {
+        let (Some(lowest), Some(highest)) = (tiles.clone().next(), tiles.clone().last()) else { return };
+        let columns = [lowest.columns[0], highest.columns[1]];
+        let (first, end) = (lowest.rows[0] as isize, highest.rows[1] as isize);
+        let leak = tiles.clone().any(|tile| !tile.leaks.is_empty());
+        for tally in &mut *tallies {
+            tally.out = Tally::NONE.out;
+        }
+        let mut from = 0;
+        // In one dimension a row has all it needs; in two the one above comes first.
+        let ahead = if D > 1 { 1 } else { 0 };
+        for number in first - ahead..end + ahead {
+            let j = number - ahead;
+            let level = || tiles.clone().skip(from).take(across).zip(from..);
+            self.edges(columns, number, first, scratch);
+            if number < first {
+                continue;
+            }
+            self.across(columns, number, first, scratch);
+            if leak {
+                for (tile, k) in level() {
+                    self.book(&mut tallies[k].out, tile, columns, j, scratch, false);
+                }
+            }
+            self.update_row(columns, number, first, scratch, count);
+            if leak {
+                for (tile, k) in level() {
+                    self.book(&mut tallies[k].out, tile, columns, j, scratch, true);
+                }
+            }
+            if level().next().is_some_and(|(tile, _)| j + 1 == tile.rows[1] as isize) {
+                for (tile, k) in level() {
+                    let [start, end] = tile.columns.map(|i| i - columns[0] + 1);
+                    tallies[k] = Tally { out: tallies[k].out, ..count.finish(start..end) };
+                }
+                from = (from + across).min(tallies.len() - across);
+            }
+        }
+    }
+
+    /// Numbers of a row that are computed: the cells of the strip with a neighbour at both ends, filled up to whole vectors
+    /// with cells that are not ours.
+    #[inline(always)]
+    fn end(columns: [usize; 2]) -> usize {
+        (columns[1] - columns[0] + 2).next_multiple_of(L::WIDTH)
+    }
+    #[inline(always)]
+    fn vectors(columns: [usize; 2]) -> impl Iterator<Item = usize> {
+        let count = Self::end(columns) / L::WIDTH;
+        (0..count).map(|k| k * L::WIDTH)
+    }
+    /// Place of cell 0 of the scratch, the one left of the strip.
+    #[inline(always)]
+    fn start(&self, columns: [usize; 2], j: isize) -> usize {
+        self.layout.place(columns[0] as isize - 1, j)
+    }
+
+    /// Find the edges of row `number`.
+    #[inline(always)]
+    fn edges(&self, columns: [usize; 2], number: isize, first: isize, scratch: &mut Scratch) {
+        let Scratch { prime, edges, .. } = scratch;
+        let above = &mut edges[(number - first + 2) as usize % 2];
+        let place = self.start(columns, number);
+        // One vector ahead: its roots and divisions are under way while this one's sums are formed.
+        prime.put(0, self.scheme.prime(&self.cell(place)));
+        for m in Self::vectors(columns) {
+            self.expect(place + m);
+            prime.put(m + L::WIDTH, self.scheme.prime(&self.cell(place + m + L::WIDTH)));
+            // SAFETY: the row has been put up to here.
+            let prime: T::Prime = unsafe { prime.get(m as isize) };
+            above.put(m, self.scheme.reconstruct(&Around { strip: self, place: place + m }, &prime));
+        }
+        above.mend(if number <= first { T::Edges::COUNT } else { 0 }, Self::end(columns));
+    }
+
+    /// Ask for what will be read a row above `place` and written at it: the rows of a strip are too short for the processor to
+    /// notice by itself where the next one begins.
+    #[inline(always)]
+    fn expect(&self, place: usize) {
+        /// Numbers in a line of the cache.
+        const LINE: usize = 8;
+        let above = place + self.layout.stride;
+        for m in (0..L::WIDTH).step_by(LINE) {
+            for k in 0..T::State::COUNT {
+                expect(self.from[k].wrapping_add(above + m));
+                expect(self.to[k].wrapping_add(place + m));
+            }
+            if self.varied != 0 {
+                for k in 0..T::Ground::COUNT {
+                    expect(self.grounds[k].wrapping_add(above + m));
                 }
             }
         }
-        if D == 1 {
-            finish(&mut tallies, count);
-        }
     }
 
-    /// Find the edges of row `number`, and update the row below (in one dimension the row itself), unless it lies below
-    /// the `first`. Cell 0 of the scratch is the one left of the strip.
+    /// Find what passes the faces along x of the row below `number` (in one dimension the row itself) and what is found at
+    /// its upper corners.
     #[inline(always)]
-    fn row(
-        &self,
-        columns: [usize; 2],
-        number: isize,
-        first: isize,
-        leaks: &[Leak],
-        scratch: &mut Scratch,
-        count: &mut Count<L>,
-    ) {
-        let width = columns[1] - columns[0];
-        // Whole vectors, the last with cells that are not ours.
-        let end = (width + 2).next_multiple_of(L::WIDTH);
-        let vectors = || (0..end).step_by(L::WIDTH);
-        let start = |j: isize| self.sweep.layout.place(columns[0] as isize - 1, j);
-        let ahead = if D > 1 { 1 } else { 0 };
-        let Scratch { edges, across, below, corners } = scratch;
+    fn across(&self, columns: [usize; 2], number: isize, first: isize, scratch: &mut Scratch) {
+        let Scratch { edges, across, corners, .. } = scratch;
+        let end = Self::end(columns);
         if number <= first {
             across.mend(T::Flux::COUNT, end);
         }
-        let [even, odd] = edges;
-        let (above, row) = if (number - first) % 2 == 0 { (even, odd) } else { (odd, even) };
-        let place = start(number);
-        for m in vectors() {
-            self.expect(start(number + 2) + m, start(number) + m);
-            above.put(m, self.scheme.reconstruct(&Around { strip: self, place: place + m }));
-        }
-        above.mend(if number <= first { T::Edges::COUNT } else { 0 }, end);
-        if number < first {
-            return;
-        }
-        // They are sorted by rows.
-        let leaks = {
-            let below = |up_to: isize| leaks.partition_point(|leak| (leak.cell[1] as isize) < up_to);
-            &leaks[below(number - ahead)..below(number - ahead + 1)]
-        };
-        let row = if D > 1 { &*row } else { &*above };
-        let (above, j) = (&*above, number - ahead);
-        let [low, high] = corners;
-        for m in vectors() {
+        let above = &edges[(number - first) as usize % 2];
+        let row = if D > 1 { &edges[(number - first + 1) as usize % 2] } else { above };
+        let updates = D == 1 || number > first;
+        let high = &mut corners[(number - first) as usize % 2];
+        for m in Self::vectors(columns) {
             let at = m as isize;
             // SAFETY: both rows have been put and mended.
             unsafe {
                 let (left, right): (T::Edges, T::Edges) = (row.get(at - 1), row.get(at));
-                if j >= first {
+                if updates {
                     across.put(m, self.scheme.flux(0, &left, &right));
                 }
                 if T::Corner::COUNT > 0 {
@@ -193,11 +270,27 @@ impl<'a, const D: usize, L: Wide, T: Scheme<D, L>> Strip<'a, D, L, T> {
             }
         }
         high.mend(T::Corner::COUNT, end);
-        if !leaks.is_empty() {
-            self.book(count, leaks, columns, [(0, 0, across, 0), (0, 1, across, 1), (1, 0, below, 0)]);
-        }
-        let low = if D > 1 { &*low } else { &*high };
-        for m in vectors() {
+    }
+
+    /// Find what passes the faces along y between row `number` and the one below, and update that (in one dimension the
+    /// row itself).
+    #[inline(always)]
+    fn update_row(
+        &self,
+        columns: [usize; 2],
+        number: isize,
+        first: isize,
+        scratch: &mut Scratch,
+        count: &mut Count,
+    ) {
+        let Scratch { edges, across, below, corners, fresh, .. } = scratch;
+        let above = &edges[(number - first) as usize % 2];
+        let row = if D > 1 { &edges[(number - first + 1) as usize % 2] } else { above };
+        let high = &corners[(number - first) as usize % 2];
+        let low = if D > 1 { &corners[(number - first + 1) as usize % 2] } else { high };
+        let updates = D == 1 || number > first;
+        let place = self.start(columns, if D > 1 { number - 1 } else { number });
+        for m in Self::vectors(columns) {
             let at = m as isize;
             // SAFETY: all rows have been put and mended; `below` in the row before.
             unsafe {
@@ -205,47 +298,22 @@ impl<'a, const D: usize, L: Wide, T: Scheme<D, L>> Strip<'a, D, L, T> {
                 let mut faces = [Faces { lo: across.get(at), hi: across.get(at + 1) }; D];
                 if D > 1 {
                     let up = self.scheme.flux(D - 1, &edges, &above.get(at));
-                    if j >= first {
-                        faces[D - 1] = Faces { lo: below.get(at), hi: up };
-                    }
+                    faces[D - 1] = Faces { lo: below.get(at), hi: up };
                     below.put(m, up);
                 }
-                if j >= first {
-                    let live = L::within(1_usize.saturating_sub(m)..(width + 1).saturating_sub(m));
+                if updates {
+                    let live = Self::ours(columns, m);
                     let corners = [[low.get(at), low.get(at + 1)], [high.get(at), high.get(at + 1)]];
-                    let vector = Vector { column: m, place: start(j) + m, live };
-                    self.update(count, vector, &edges, &faces, &corners);
+                    let vector = Vector { column: m, place: place + m, live };
+                    if m > 0 {
+                        self.watch(columns, m - L::WIDTH, place, fresh, count);
+                    }
+                    fresh.put(m, self.update(count, vector, &edges, &faces, &corners));
                 }
             }
         }
-        if !leaks.is_empty() {
-            self.book(count, leaks, columns, [(1, 1, below, 0)]);
-        }
-        corners.swap(0, 1);
-    }
-
-    #[inline(always)]
-    fn sheet(&self, k: usize) -> &Sheet<'a> {
-        self.to[k].as_ref().expect("a state has as many sheets as parts")
-    }
-
-    /// Ask for the vector that will be read at `next` and the one that will be written at `place`: the rows of a tile are too short
-    /// for the processor to notice by itself where the next one begins.
-    #[inline(always)]
-    fn expect(&self, next: usize, place: usize) {
-        /// Numbers in a line of the cache.
-        const LINE: usize = 8;
-        let Sweep { from, grounds, .. } = self.sweep;
-        for m in (0..L::WIDTH).step_by(LINE) {
-            for k in 0..T::State::COUNT {
-                expect(from.part(k).as_ptr().wrapping_add(next + m));
-                expect(self.sheet(k).at(place + m));
-            }
-            if self.even.is_none() {
-                for k in 0..T::Ground::COUNT {
-                    expect(grounds.part(k).as_ptr().wrapping_add(next + m));
-                }
-            }
+        if updates {
+            self.watch(columns, Self::end(columns) - L::WIDTH, place, fresh, count);
         }
     }
 
@@ -256,30 +324,28 @@ impl<'a, const D: usize, L: Wide, T: Scheme<D, L>> Strip<'a, D, L, T> {
     #[inline(always)]
     unsafe fn update(
         &self,
-        count: &mut Count<L>,
+        count: &mut Count,
         Vector { column, place, live }: Vector<L>,
         edges: &T::Edges,
         faces: &[Faces<T::Flux>; D],
         corners: &[[T::Corner; 2]; 2],
-    ) {
+    ) -> T::State {
         let zero = L::zero();
         let here = self.cell(place);
         let live = live & !self.scheme.outside(&here.ground);
         if !L::any(live) {
-            return;
+            return here.state;
         }
-        let mut new = self.scheme.update(&here, edges, faces, corners, &self.spacing, self.dt);
+        let mut new = self.scheme.update(&Around { strip: self, place }, edges, faces, corners, self.dt);
         let mut old = here.state;
-        if self.sweep.keep > 0.0 {
+        if self.keep > 0.0 {
             // SAFETY: as the caller promises.
             old = T::State::gather(
                 #[inline(always)]
-                |k| unsafe { self.sheet(k).get(place, live) },
+                |k| unsafe { L::load_where(live, self.to[k].add(place)) },
             );
-            new = self.scheme.average(L::of(self.sweep.keep), &old, &new);
+            new = self.scheme.average(L::of(self.keep), &old, &new);
         }
-        let mut finite = zero;
-        let mut differs = L::zero().lt(zero);
         let (mut before, mut input) = ([zero; MOST_PARTS], [zero; MOST_PARTS]);
         old.scatter(
             #[inline(always)]
@@ -289,31 +355,51 @@ impl<'a, const D: usize, L: Wide, T: Scheme<D, L>> Strip<'a, D, L, T> {
             #[inline(always)]
             |k, value| input[k] = value,
         );
+        let (mut sum, mut differs) = (zero, zero.lt(zero));
         new.scatter(
             #[inline(always)]
             |k, value| {
                 // SAFETY: as the caller promises.
-                unsafe { self.sheet(k).put(place, live, value) };
-                finite = finite + value * zero;
+                unsafe { value.store_where(live, self.to[k].add(place)) };
+                sum = sum + value;
                 differs = differs | !value.same(input[k]);
-                if self.sweep.last {
-                    count.change(k, live, (value - before[k]).abs());
+                if self.last && T::DRIFTS {
+                    count.change(k, column, live, (value - before[k]).abs());
                 }
             },
         );
-        if count.quiet {
-            count.quiet = !L::any(live & (differs | !self.scheme.rests(edges)));
+        if !count.all_stir::<L>(column) {
+            count.stir::<L>(column, live & (differs | !self.scheme.rests(&here)));
         }
-        count.finite &= !L::any(live & !finite.same(zero));
-        if self.sweep.last {
-            let cell = Cell { state: new, ground: here.ground };
-            let watch = self.scheme.watch(&cell);
-            count.watch(column, live, self.scheme.rate(&cell, &self.spacing), &watch);
-            if let Some(maps) = self.maps {
-                // SAFETY: as the caller promises.
-                unsafe { self.mark(maps, place, live, &watch) };
-            }
+        let infinite = live & !(sum - sum).same(zero);
+        if L::any(infinite) {
+            count.lose::<L>(column, infinite);
         }
+        new
+    }
+
+    /// Take the new states of a vector into account: one vector behind, while the next one's roots and divisions are under way.
+    #[inline(always)]
+    fn watch(&self, columns: [usize; 2], m: usize, start: usize, fresh: &Row<MOST_PARTS>, count: &mut Count) {
+        if !self.last {
+            return;
+        }
+        let place = start + m;
+        // SAFETY: the vector has been put; the ground is that of the same cells.
+        let cell = Cell { state: unsafe { fresh.get(m as isize) }, ground: self.ground(place) };
+        let live = Self::ours(columns, m) & !self.scheme.outside(&cell.ground);
+        let watch = self.scheme.watch(&cell);
+        count.watch::<L>(m, live, self.scheme.rate(&cell, &self.spacing), &watch);
+        if let Some(maps) = self.maps {
+            // SAFETY: these are cells of ours.
+            unsafe { self.mark(maps, place, live, &watch) };
+        }
+    }
+
+    /// Which of the cells from `m` on are those of the strip.
+    #[inline(always)]
+    fn ours(columns: [usize; 2], m: usize) -> L::Mask {
+        L::within(1_usize.saturating_sub(m)..(columns[1] - columns[0] + 1).saturating_sub(m))
     }
 
     /// Bring the maps of peaks and times up to date.
@@ -323,10 +409,10 @@ impl<'a, const D: usize, L: Wide, T: Scheme<D, L>> Strip<'a, D, L, T> {
     #[inline(always)]
     unsafe fn mark(&self, maps: &[Sheet; 4], place: usize, live: L::Mask, watch: &Watch<L>) {
         let [thickness, speed, arrival, stop] = maps;
-        let (zero, time) = (L::zero(), L::of(self.sweep.time));
+        let (zero, time) = (L::zero(), L::of(self.time));
         // SAFETY: as the caller promises.
         unsafe {
-            for (map, value) in [(thickness, watch.thickness), (speed, watch.speed)] {
+            for (map, value) in [(thickness, watch.thickness), (speed, watch.square.sqrt())] {
                 let higher = live & map.get::<L>(place, live).lt(value);
                 if L::any(higher) {
                     map.put(place, higher, value);
@@ -340,43 +426,45 @@ impl<'a, const D: usize, L: Wide, T: Scheme<D, L>> Strip<'a, D, L, T> {
                     arrival.put(place, first, time);
                 }
             }
-            let moves = live & zero.lt(watch.speed);
+            let moves = live & zero.lt(watch.square);
             if L::any(moves) {
                 stop.put(place, moves, time);
             }
         }
     }
 
-    /// Book what passes the ways out of a row: of each kind of face (axis, side) the flux stands in a row of the
-    /// scratch, moved by so many cells.
+    /// Book what passes the ways out of row `j` of a tile: after the faces along x are known those and the lower ones along
+    /// y, after the update (`up`) the upper ones.
     #[inline(always)]
-    fn book<const N: usize>(
+    fn book(
         &self,
-        count: &mut Count<L>,
-        leaks: &[Leak],
+        out: &mut [f64; EXITS.len()],
+        tile: &Tile,
         columns: [usize; 2],
-        kinds: [(usize, u8, &Row<MOST_FLUX>, isize); N],
+        j: isize,
+        scratch: &Scratch,
+        up: bool,
     ) {
-        for leak in leaks {
-            let column = leak.cell[0] as usize;
-            if !(columns[0]..columns[1]).contains(&column) {
+        // They are sorted by rows.
+        let leaks = &self.leaks[tile.leaks.clone()];
+        let below = |up_to: isize| leaks.partition_point(|leak| (leak.cell[1] as isize) < up_to);
+        for leak in &leaks[below(j)..below(j + 1)] {
+            let (axis, side) = (leak.axis as usize, leak.side);
+            if (axis == 1 && side == 1) != up {
                 continue;
             }
-            for (axis, side, row, moved) in &kinds {
-                if (leak.axis as usize, leak.side) != (*axis, *side) {
-                    continue;
-                }
-                let at = (column - columns[0]) as isize + 1 + moved;
-                // SAFETY: the row has been put, and ends with room for a vector.
-                let flux: T::Flux = unsafe { row.get(at) };
-                let leaves = if *side == 0 {
-                    -self.scheme.booked(&flux, Side::Right)
-                } else {
-                    self.scheme.booked(&flux, Side::Left)
-                };
-                let lambda = self.sweep.dt * (1.0 / self.sweep.size[*axis]);
-                count.out[leak.exit as usize] += lambda * leaves.first();
-            }
+            let row = if axis == 0 { &scratch.across } else { &scratch.below };
+            let moved = usize::from(axis == 0 && side == 1);
+            let at = leak.cell[0] as usize - columns[0] + 1 + moved;
+            // SAFETY: the row has been put, and ends with room for a vector.
+            let flux: T::Flux = unsafe { row.get(at as isize) };
+            let leaves = if side == 0 {
+                -self.scheme.booked(&flux, Side::Right)
+            } else {
+                self.scheme.booked(&flux, Side::Left)
+            };
+            let lambda = self.dt.first() * self.spacing.per[axis].first();
+            out[leak.exit as usize] += lambda * leaves.first();
         }
     }
 }

@@ -2,8 +2,8 @@
 
 use super::{EXITS, MOST_PARTS, STRIP};
 use crate::lanes::Wide;
-use crate::real::each;
 use crate::scheme::Watch;
+use std::ops::Range;
 
 /// What a sweep found in one tile.
 #[derive(Clone, Copy, Debug)]
@@ -49,112 +49,140 @@ impl Tally {
     };
 }
 
-/// Sums of one quantity down the columns of a strip.
+/// One quantity in each column of a strip.
 #[derive(Clone, Copy)]
 #[repr(align(64))]
 struct Columns([f64; STRIP]);
 
 impl Columns {
+    const NONE: Columns = Columns([0.0; STRIP]);
+
+    /// Combine the columns from `column` on with a value each.
     #[inline(always)]
-    fn add<L: Wide>(&mut self, column: usize, value: L) {
+    fn change<L: Wide>(&mut self, column: usize, change: impl FnOnce(L) -> L) {
         debug_assert!(column + L::WIDTH <= STRIP);
         // SAFETY: `column` is that of a vector inside the strip.
         unsafe {
             let place = self.0.as_mut_ptr().add(column);
-            (L::load(place) + value).store(place);
+            change(L::load(place)).store(place);
         }
     }
-    fn sum(&self) -> f64 {
-        self.0.iter().sum()
+    #[inline(always)]
+    fn add<L: Wide>(&mut self, column: usize, value: L) {
+        self.change(
+            column,
+            #[inline(always)]
+            |sum: L| sum + value,
+        );
+    }
+    #[inline(always)]
+    fn most<L: Wide>(&mut self, column: usize, value: L) {
+        self.change(
+            column,
+            #[inline(always)]
+            |most: L| value.max(most),
+        );
     }
 }
 
-/// A tally in the making. Sums run down the columns of the strips and then across them, largest values need no order:
-/// how many lanes compute it makes no difference.
-pub(crate) struct Count<L: Wide> {
-    rate: L,
-    speed: L,
-    change: [L; MOST_PARTS],
+/// Tallies in the making. Everything is gathered down the columns of a strip and then, for each tile, across its columns:
+/// how many lanes compute it, and with which tiles at its sides, makes no difference.
+pub(crate) struct Count {
+    rate: Columns,
+    square: Columns,
+    change: [Columns; MOST_PARTS],
     energy: Columns,
     volume: Columns,
     film: Columns,
-    wet: usize,
-    moving: usize,
-    pub(super) out: [f64; EXITS.len()],
-    pub(super) quiet: bool,
-    pub(super) finite: bool,
+    wet: Columns,
+    moving: Columns,
+    /// Columns in which a cell changed or may yet, a bit each.
+    stirs: u128,
+    infinite: u128,
 }
 
-#[inline(always)]
-fn most<L: Wide>(most: &mut L, live: L::Mask, value: L) {
-    *most = L::select(live & most.lt(value), value, *most);
-}
-
-#[inline(always)]
-fn largest<L: Wide>(value: L) -> f64 {
-    let mut lanes = [0.0_f64; STRIP];
-    // SAFETY: a strip is wider than any vector.
-    unsafe { value.store(lanes.as_mut_ptr()) };
-    lanes.into_iter().fold(0.0, f64::max)
-}
-
-impl<L: Wide> Count<L> {
-    #[inline(always)]
-    pub(crate) fn new() -> Self {
-        let (zero, columns) = (L::zero(), Columns([0.0; STRIP]));
+impl Count {
+    pub(crate) const fn new() -> Self {
+        const { assert!(STRIP <= 128) };
+        let none = Columns::NONE;
         Count {
-            rate: zero,
-            speed: zero,
-            change: [zero; MOST_PARTS],
-            energy: columns,
-            volume: columns,
-            film: columns,
-            wet: 0,
-            moving: 0,
-            out: [0.0; EXITS.len()],
-            quiet: true,
-            finite: true,
+            rate: none,
+            square: none,
+            change: [none; MOST_PARTS],
+            energy: none,
+            volume: none,
+            film: none,
+            wet: none,
+            moving: none,
+            stirs: 0,
+            infinite: 0,
         }
     }
 
     /// Take the cells of `live` into account, the first of which lies in `column`.
     #[inline(always)]
-    pub(crate) fn watch(&mut self, column: usize, live: L::Mask, rate: L, watch: &Watch<L>) {
-        let zero = L::zero();
-        most(&mut self.rate, live, rate);
-        most(&mut self.speed, live, watch.speed);
+    pub(crate) fn watch<L: Wide>(&mut self, column: usize, live: L::Mask, rate: L, watch: &Watch<L>) {
+        let (zero, one) = (L::zero(), L::of(1.0));
+        let square = L::select(live, watch.square, zero);
         let volume = L::select(live, watch.volume, zero);
+        self.rate.most(column, L::select(live, rate, zero));
+        self.square.most(column, square);
         self.volume.add(column, volume);
         self.energy.add(column, L::select(live, watch.energy, zero));
         let films = live & zero.lt(watch.film);
         if L::any(films) {
             self.film.add(column, L::select(films, watch.volume * watch.film, zero));
         }
-        self.wet += L::count(zero.lt(volume));
-        self.moving += L::count(live & zero.lt(watch.speed));
+        self.wet.add(column, L::select(zero.lt(volume), one, zero));
+        self.moving.add(column, L::select(zero.lt(square), one, zero));
     }
 
     /// Keep the largest change of a part.
     #[inline(always)]
-    pub(super) fn change(&mut self, part: usize, live: L::Mask, change: L) {
-        most(&mut self.change[part], live, change);
+    pub(super) fn change<L: Wide>(&mut self, part: usize, column: usize, live: L::Mask, change: L) {
+        self.change[part].most(column, L::select(live, change, L::zero()));
     }
 
-    /// The tally.
+    /// Does every column from `column` on that a vector has stir already?
     #[inline(always)]
-    pub(crate) fn finish(self) -> Tally {
-        Tally {
-            rate: largest(self.rate),
-            speed: largest(self.speed),
-            change: each!(k => largest(self.change[k])),
-            energy: self.energy.sum(),
-            volume: self.volume.sum(),
-            film: self.film.sum(),
-            wet: self.wet,
-            moving: self.moving,
-            out: self.out,
-            quiet: self.quiet,
-            finite: self.finite,
+    pub(super) fn all_stir<L: Wide>(&self, column: usize) -> bool {
+        let all = (1 << L::WIDTH) - 1;
+        (self.stirs >> column) as u64 & all == all
+    }
+    /// Note the cells that changed or may yet.
+    #[inline(always)]
+    pub(super) fn stir<L: Wide>(&mut self, column: usize, mask: L::Mask) {
+        self.stirs |= u128::from(L::bits(mask)) << column;
+    }
+    /// Note the cells that are no number.
+    #[inline(always)]
+    pub(super) fn lose<L: Wide>(&mut self, column: usize, mask: L::Mask) {
+        self.infinite |= u128::from(L::bits(mask)) << column;
+    }
+
+    /// The tally of the tile in some columns, without what left it; they are empty afterwards.
+    pub(crate) fn finish(&mut self, columns: Range<usize>) -> Tally {
+        let (mut tally, mut square) = (Tally::NONE, 0.0_f64);
+        for k in columns.clone() {
+            tally.rate = tally.rate.max(self.rate.0[k]);
+            square = square.max(self.square.0[k]);
+            tally.energy += self.energy.0[k];
+            tally.volume += self.volume.0[k];
+            tally.film += self.film.0[k];
+            tally.wet += self.wet.0[k] as usize;
+            tally.moving += self.moving.0[k] as usize;
+            for (most, change) in tally.change.iter_mut().zip(&self.change) {
+                *most = most.max(change.0[k]);
+            }
         }
+        tally.speed = square.sqrt();
+        let bits = ((1_u128 << columns.len()) - 1) << columns.start;
+        (tally.quiet, tally.finite) = (self.stirs & bits == 0, self.infinite & bits == 0);
+        let Count { rate, square, change: [a, b, c], energy, volume, film, wet, moving, .. } = self;
+        for quantity in [rate, square, a, b, c, energy, volume, film, wet, moving] {
+            quantity.0[columns.clone()].fill(0.0);
+        }
+        (self.stirs, self.infinite) = (self.stirs & !bits, self.infinite & !bits);
+        tally
     }
 }

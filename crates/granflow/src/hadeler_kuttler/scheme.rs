@@ -402,9 +402,11 @@ where
 {
     type State = Pile<R>;
     type Ground = Ground<D, R>;
+    type Prime = ();
     type Edges = Edges<D, R, <Varies<LIMITED> as Kind>::Profile<R>>;
     type Flux = R;
     type Corner = R;
+    const DRIFTS: bool = true;
 
     fn on<L: Real, W: Work<D, L>>(&self, work: W) -> W::Output {
         match self.slopes {
@@ -413,7 +415,9 @@ where
         }
     }
     #[inline(always)]
-    fn reconstruct(&self, window: &impl Window<D, R, Pile<R>, Ground<D, R>>) -> Self::Edges {
+    fn prime(&self, _here: &Cell<Pile<R>, Ground<D, R>>) {}
+    #[inline(always)]
+    fn reconstruct(&self, window: &impl Window<D, R, Pile<R>, Ground<D, R>>, _: &()) -> Self::Edges {
         let constant: Self::Edges = constant(window, [0; D]);
         let theta = match self.slopes {
             Slopes::None => return constant,
@@ -433,16 +437,16 @@ where
     #[inline(always)]
     fn update(
         &self,
-        here: &Cell<Pile<R>, Ground<D, R>>,
+        window: &impl Window<D, R, Pile<R>, Ground<D, R>>,
         _edges: &Self::Edges,
         faces: &[Faces<R>; D],
         corners: &[[R; 2]; 2],
-        spacing: &Spacing<D, R>,
         dt: R,
     ) -> Pile<R> {
+        let here = window.at([0; D]);
         Pile {
             u: here.state.u - dt * corners[0][0],
-            v: here.state.v + dt * rate_of_v(&here.ground, faces, corners, spacing),
+            v: here.state.v + dt * rate_of_v(&here.ground, faces, corners, window.spacing()),
         }
     }
 
@@ -474,10 +478,10 @@ where
     }
     /// No sand rolls here and none is poured.
     #[inline(always)]
-    fn rests(&self, edges: &Self::Edges) -> R::Mask {
-        let mut sum = edges.v[0].mid().abs();
+    fn rests(&self, here: &Cell<Pile<R>, Ground<D, R>>) -> R::Mask {
+        let mut sum = here.state.v.abs();
         unroll!(axis in D => {
-            sum = sum + edges.poured[axis].abs();
+            sum = sum + here.ground.source[axis].abs();
         });
         sum.same(R::zero())
     }
@@ -519,7 +523,7 @@ where
         let Cell { state, ground } = here;
         Watch {
             volume: ground.weight * state.u + state.v,
-            speed: state.v,
+            square: state.v * state.v,
             energy: R::zero(),
             thickness: state.u,
             film: R::zero(),

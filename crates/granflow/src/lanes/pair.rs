@@ -74,6 +74,18 @@ impl<L: Real> Real for Pair<L> {
     fn ln(self) -> Self {
         Pair(self.0.ln(), self.1.ln())
     }
+    #[inline(always)]
+    fn mul_add(self, factor: Self, term: Self) -> Self {
+        Pair(self.0.mul_add(factor.0, term.0), self.1.mul_add(factor.1, term.1))
+    }
+    #[inline(always)]
+    fn min(self, other: Self) -> Self {
+        Pair(self.0.min(other.0), self.1.min(other.1))
+    }
+    #[inline(always)]
+    fn max(self, other: Self) -> Self {
+        Pair(self.0.max(other.0), self.1.max(other.1))
+    }
 }
 
 impl<L: Wide> Wide for Pair<L> {
@@ -122,7 +134,7 @@ impl<L: Wide> Wide for Pair<L> {
         L::all(mask.0 & mask.1)
     }
     #[inline(always)]
-    fn count(mask: Self::Mask) -> usize {
-        L::count(mask.0) + L::count(mask.1)
+    fn bits(mask: Self::Mask) -> u64 {
+        L::bits(mask.0) | L::bits(mask.1) << L::WIDTH
     }
 }

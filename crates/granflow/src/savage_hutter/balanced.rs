@@ -4,7 +4,7 @@
 //! so that it stops and never reverses. The rules and what they were measured against:
 //! `docs/decisions/0002-rest.md`.
 
-use super::flux::{Half, halves};
+use super::flux::{Density, Half, halves};
 use super::friction::Friction;
 use super::ground::{Bed, Towards};
 use super::{Flow, normal};
@@ -19,8 +19,8 @@ use std::marker::PhantomData;
 pub struct Balanced<F, B, const LIMITED: bool = true> {
     /// The friction law.
     pub friction: F,
-    /// A cell thinner than this keeps what it has (units of h; 0 allowed).
-    pub film: f64,
+    /// A cell thinner than this keeps what it has (units of h); at least the smallest normal number.
+    film: f64,
     /// Limited slopes of h and u (second order, with [`crate::time::SSP_RK2`]).
     pub slopes: bool,
     bed: PhantomData<fn() -> B>,
@@ -29,7 +29,7 @@ pub struct Balanced<F, B, const LIMITED: bool = true> {
 impl<F, B> Balanced<F, B> {
     /// First order, to be stepped by [`crate::time::EULER`].
     pub fn first(friction: F, film: f64) -> Self {
-        Balanced { friction, film, slopes: false, bed: PhantomData }
+        Balanced { friction, film: film.max(f64::MIN_POSITIVE), slopes: false, bed: PhantomData }
     }
     /// Second order, to be stepped by [`crate::time::SSP_RK2`].
     pub fn second(friction: F, film: f64) -> Self {
@@ -119,21 +119,58 @@ pub struct Edges<const D: usize, R: Real, P, T> {
     spread: [P; D],
     /// What the kinetic density sends through the lower and the upper face of each axis.
     half: [[Half<R>; 2]; D],
-    /// Rise of the free surface's potential towards both neighbours of each axis, and its part by thickness.
-    rise: [[R; 2]; D],
-    weight: [[R; 2]; D],
     /// The plane that the bed lies in.
     plane: T,
-    /// Holds itself: thick, q = 0, and the pull is within the static bound.
-    held: R::Mask,
-    /// Dry, or a film, or outside: takes what comes, gives nothing.
-    void: R::Mask,
-    /// q = 0.
-    still: R::Mask,
+    /// What the cell lets out.
+    gate: Gate<R>,
 }
 parts!([const D: usize, R: Real, P: Parts<R>, T: Parts<R>] Edges<D, R, P, T> {
-    h: R, u: [R; D], spread: [P; D], half: [[Half<R>; 2]; D], rise: [[R; 2]; D], weight: [[R; 2]; D], plane: T
-} masks { held, void, still });
+    h: R, u: [R; D], spread: [P; D], half: [[Half<R>; 2]; D], plane: T, gate: Gate<R>
+} masks {});
+
+/// Is a cell, or one of the two cells of a face, bare or held? A number, so that a few can be asked at once: 0 is open.
+#[derive(Clone, Copy, Debug)]
+struct Gate<R>(R);
+
+// SAFETY: part 0 is below 1.
+unsafe impl<R: Real> Parts<R> for Gate<R> {
+    const COUNT: usize = 1;
+    #[inline(always)]
+    fn gather(part: impl Fn(usize) -> R) -> Self {
+        Gate(part(0))
+    }
+    #[inline(always)]
+    fn scatter(self, mut put: impl FnMut(usize, R)) {
+        put(0, self.0);
+    }
+}
+
+impl<R: Real> Gate<R> {
+    /// Dry, or a film, or outside: takes what comes, gives nothing.
+    const VOID: f64 = 1.0;
+    /// Holds itself: thick, q = 0, and the pull is within the static bound.
+    const HELD: f64 = 3.0;
+
+    #[inline(always)]
+    fn of(void: R::Mask, held: R::Mask) -> Self {
+        let void = R::select(void, R::of(Self::VOID), R::zero());
+        Gate(R::select(held, R::of(Self::HELD), void))
+    }
+    #[inline(always)]
+    fn and(self, other: Self) -> Self {
+        Gate(self.0 + other.0)
+    }
+    /// Both cells of the face, or this one, are open.
+    #[inline(always)]
+    fn is_open(self) -> R::Mask {
+        self.0.same(R::zero())
+    }
+    /// This cell, or one of the two, is held.
+    #[inline(always)]
+    fn is_held(self) -> R::Mask {
+        R::of(Self::HELD).le(self.0)
+    }
+}
 
 impl<const D: usize, R: Real, P: Spread<D, R>, T> Edges<D, R, P, T> {
     /// The share of the density going out through a face that the mean flow carries.
@@ -147,12 +184,6 @@ impl<const D: usize, R: Real, P: Spread<D, R>, T> Edges<D, R, P, T> {
         let share = outward.positive() / R::select(none, R::of(1.0), mass.abs());
         R::select(none, R::zero(), share.min(R::of(1.0)))
     }
-    /// The rise that the flux does not carry as pressure: all of it where a cell of the face is held.
-    #[inline(always)]
-    fn beside(&self, axis: usize, towards: Towards, held: R::Mask) -> R {
-        let (rise, weight) = (self.rise[axis][towards as usize], self.weight[axis][towards as usize]);
-        R::select(held, rise, rise - weight)
-    }
 }
 
 /// What passes a face.
@@ -162,10 +193,21 @@ pub struct Flux<const D: usize, R: Real> {
     /// Momentum along the axis of the face, as its left and its right cell see it.
     left: [R; D],
     right: [R; D],
-    /// One of the two cells is held.
-    held: R::Mask,
+    /// What its two cells let out.
+    gate: Gate<R>,
 }
-parts!([const D: usize, R: Real] Flux<D, R> { mass: R, left: [R; D], right: [R; D] } masks { held });
+parts!([const D: usize, R: Real] Flux<D, R> {
+    mass: R, left: [R; D], right: [R; D], gate: Gate<R>
+} masks {});
+
+/// Rise of the free surface's potential towards both neighbours of an axis.
+struct Rise<R> {
+    whole: [R; 2],
+    /// Its part by thickness, which the flux between open cells carries as pressure.
+    weight: [R; 2],
+    /// The rest.
+    climb: [R; 2],
+}
 
 impl<F: Friction, B: Copy, const LIMITED: bool> Balanced<F, B, LIMITED> {
     /// A pull this much above the static bound still counts as held.
@@ -176,7 +218,7 @@ impl<F: Friction, B: Copy, const LIMITED: bool> Balanced<F, B, LIMITED> {
     where
         B: Bed<D, R>,
     {
-        h.lt(R::of(self.film.max(f64::MIN_POSITIVE))) | bed.outside()
+        h.lt(R::of(self.film)) | bed.outside()
     }
 
     /// Largest difference du of the velocity u + du, u - du at a cell's two faces, depths h - dh and h + dh there,
@@ -215,35 +257,50 @@ impl<F: Friction, B: Copy, const LIMITED: bool> Balanced<F, B, LIMITED> {
         R::select(above, rise.min((-opposite).positive()), rise)
     }
 
-    /// Rises towards both neighbours of one axis, as a resting cell counts them.
+    /// Rises towards both neighbours of one axis where neither is bare.
     #[inline(always)]
-    fn rises<const D: usize, R: Real>(
-        &self,
-        near: &Near<D, R, Flow<D, R>, B>,
-        axis: usize,
-    ) -> ([R; 2], [R; 2])
+    fn thick_rise<const D: usize, R: Real>(near: &Near<D, R, Flow<D, R>, B>, axis: usize) -> Rise<R>
     where
         B: Bed<D, R>,
     {
         let Cell { state, ground } = &near.here;
         let dx = near.spacing.size[axis];
         let (a, b) = (&near.lo[axis], &near.hi[axis]);
-        let h = state.h;
-        let lo = ground.rise(axis, Towards::Lo, &a.ground, h, a.state.h, dx);
-        let hi = ground.rise(axis, Towards::Hi, &b.ground, h, b.state.h, dx);
-        let weight_lo = ground.weight(&a.ground, h, a.state.h);
-        let weight_hi = ground.weight(&b.ground, h, b.state.h);
-        if !R::any(self.is_void(a.state.h, &a.ground) | self.is_void(b.state.h, &b.ground)) {
-            return ([lo, hi], [weight_lo, weight_hi]);
+        let climb = [
+            ground.climb(axis, Towards::Lo, &a.ground, dx),
+            ground.climb(axis, Towards::Hi, &b.ground, dx),
+        ];
+        let weight = [
+            ground.weight(&a.ground, state.h, a.state.h),
+            ground.weight(&b.ground, state.h, b.state.h),
+        ];
+        Rise { whole: [climb[0] + weight[0], climb[1] + weight[1]], weight, climb }
+    }
+
+    /// Rises towards both neighbours of one axis, as a resting cell counts them.
+    #[inline(always)]
+    fn rise<const D: usize, R: Real>(&self, near: &Near<D, R, Flow<D, R>, B>, axis: usize) -> Rise<R>
+    where
+        B: Bed<D, R>,
+    {
+        let rise = Self::thick_rise(near, axis);
+        let (a, b) = (&near.lo[axis], &near.hi[axis]);
+        let void = [self.is_void(a.state.h, &a.ground), self.is_void(b.state.h, &b.ground)];
+        if !R::any(void[0] | void[1]) {
+            return rise;
         }
         let (out_lo, out_hi) = (a.ground.outside(), b.ground.outside());
         let zero = R::zero();
-        let (lo, hi) = (R::select(out_lo, zero, lo), R::select(out_hi, zero, hi));
+        let (lo, hi) = (R::select(out_lo, zero, rise.whole[0]), R::select(out_hi, zero, rise.whole[1]));
         let (bare_lo, bare_hi) = (self.bare(a, lo, hi), self.bare(b, hi, lo));
         // Outside the data the surface goes on as it comes; from one side only, there is no difference.
         let bare_lo = R::select(out_lo, -bare_hi, bare_lo);
         let bare_hi = R::select(out_hi, -bare_lo, bare_hi);
-        ([bare_lo, bare_hi], [R::select(out_lo, zero, weight_lo), R::select(out_hi, zero, weight_hi)])
+        let whole = [bare_lo, bare_hi];
+        let weight = [R::select(out_lo, zero, rise.weight[0]), R::select(out_hi, zero, rise.weight[1])];
+        let climb: [R; 2] =
+            each!(side => R::select(void[side], whole[side] - weight[side], rise.climb[side]));
+        Rise { whole, weight, climb }
     }
 }
 
@@ -281,16 +338,16 @@ where
         du[axis] = du[axis].min(most).max(-most);
         let spread = SpreadOf::<D, R, LIMITED>::by(dh, du);
         edges.spread[axis] = spread;
-        let lo = halves(spread.depth(Towards::Lo, h), spread.velocity(Towards::Lo, u)[axis], beta).0;
-        let hi = halves(spread.depth(Towards::Hi, h), spread.velocity(Towards::Hi, u)[axis], beta).1;
+        let lo = halves(spread.depth(Towards::Lo, h), spread.velocity(Towards::Lo, u)[axis], beta)[0];
+        let hi = halves(spread.depth(Towards::Hi, h), spread.velocity(Towards::Hi, u)[axis], beta)[1];
         edges.half[axis] = [lo, hi];
     }
 }
 
 /// How a mass would stand in its cell at rest.
 struct Stance<const D: usize, R> {
-    rise: [[R; 2]; D],
-    weight: [[R; 2]; D],
+    /// The largest drop towards a neighbour, by the whole rise or by thickness alone, per axis.
+    drop: [R; D],
     /// F = -M grad(psi).
     pull: [R; D],
     /// The static bound of |F|.
@@ -305,16 +362,16 @@ impl<F: Friction, B: Copy, const LIMITED: bool> Balanced<F, B, LIMITED> {
     {
         let Cell { state, ground } = &near.here;
         let zero = R::zero();
-        let (mut rise, mut weight) = ([[zero; 2]; D], [[zero; 2]; D]);
-        let (mut lo, mut hi) = ([zero; D], [zero; D]);
+        let (mut lo, mut hi, mut drop) = ([zero; D], [zero; D], [zero; D]);
         unroll!(axis in D => {
-            (rise[axis], weight[axis]) = self.rises(near, axis);
-            (lo[axis], hi[axis]) = (rise[axis][0], rise[axis][1]);
+            let Rise { whole: [a, b], weight: [c, d], .. } = self.rise(near, axis);
+            (lo[axis], hi[axis]) = (a, b);
+            drop[axis] = (-a).min(-c).max((-b).min(-d));
         });
         let at_rest = ground.weight_at_rest();
         let thickness = ground.thickness(state.h).max(R::of(f64::MIN_POSITIVE));
         let holding = self.friction.resistance(thickness, zero, at_rest, at_rest).holding;
-        Stance { rise, weight, pull: ground.pull(lo, hi, near.spacing.per), holding }
+        Stance { drop, pull: ground.pull(lo, hi, near.spacing.per), holding }
     }
 }
 
@@ -325,6 +382,7 @@ where
 {
     type State = Flow<D, R>;
     type Ground = B;
+    type Prime = [Density<R>; D];
     type Edges = EdgesOf<D, R, B, LIMITED>;
     type Flux = Flux<D, R>;
     type Corner = ();
@@ -339,59 +397,53 @@ where
     }
 
     #[inline(always)]
-    fn reconstruct(&self, window: &impl Window<D, R, Flow<D, R>, B>) -> Self::Edges {
+    fn prime(&self, Cell { state, ground }: &Cell<Flow<D, R>, B>) -> [Density<R>; D] {
+        let (h, u) = (state.h.positive(), state.velocity());
+        each!(axis => Density::new(h, u[axis], ground.beta(axis)))
+    }
+
+    #[inline(always)]
+    fn reconstruct(
+        &self,
+        window: &impl Window<D, R, Flow<D, R>, B>,
+        prime: &[Density<R>; D],
+    ) -> Self::Edges {
         let near = window.cross();
         let Cell { state, ground } = near.here;
         let (per, zero) = (near.spacing.per, R::zero());
-        let u = state.velocity();
+        let u: [R; D] = each!(axis => prime[axis].u);
         let void = self.is_void(state.h, &ground);
         let mut edges = Edges {
             h: state.h,
             u,
             spread: [SpreadOf::<D, R, LIMITED>::none(); D],
             half: [[Half::none(); 2]; D],
-            rise: [[zero; 2]; D],
-            weight: [[zero; 2]; D],
             plane: ground.plane(),
-            held: zero.lt(zero),
-            void,
-            still: state.is_still(),
+            gate: Gate::of(void, zero.lt(zero)),
         };
-        // Nothing can come to a bare cell among bare ones: leave out the work.
-        let mut bare = void;
-        unroll!(axis in D => {
-            bare = bare & self.is_void(near.lo[axis].state.h, &near.lo[axis].ground);
-            bare = bare & self.is_void(near.hi[axis].state.h, &near.hi[axis].ground);
-        });
-        if !R::any(!bare) {
-            return edges;
-        }
-        let stance = self.stance(&near);
-        (edges.rise, edges.weight) = (stance.rise, stance.weight);
-        let still = edges.still & !void;
+        let mut closed = void;
+        let still = state.is_still() & !void;
         if R::any(still) {
+            let stance = self.stance(&near);
             let bound = stance.holding * R::of(Self::SLACK) + ground.rounding(state.h, largest(per));
             let mut held = ground.square(stance.pull).le(bound * bound) & still;
             // A symmetric tower pulls nowhere, yet falls: bound the drop towards each neighbour too.
             unroll!(axis in D => {
-                let drop = bound * near.spacing.size[axis] * ground.stretch(axis);
-                let ([a, b], [c, d]) = (edges.rise[axis], edges.weight[axis]);
-                held = held & (-a).min(-c).le(drop) & (-b).min(-d).le(drop);
+                let most = bound * near.spacing.size[axis] * ground.stretch(axis);
+                held = held & stance.drop[axis].le(most);
             });
-            edges.held = held;
+            edges.gate = Gate::of(void, held);
+            closed = closed | held;
         }
         // A held cell and a void one give nothing.
-        let closed = edges.held | void;
         if !R::any(!closed) {
             return edges;
         }
         unroll!(axis in D => {
-            let beta = ground.beta(axis);
-            if self.slopes {
+            if LIMITED && self.slopes {
                 self.spread(&near, u, axis, &mut edges);
             } else {
-                let (lo, hi) = halves(state.h.positive(), u[axis], beta);
-                edges.half[axis] = [lo, hi];
+                edges.half[axis] = prime[axis].halves(state.h.positive());
             }
         });
         if R::any(closed) {
@@ -406,23 +458,24 @@ where
     fn flux(&self, axis: usize, left: &Self::Edges, right: &Self::Edges) -> Flux<D, R> {
         let (zero, one) = (R::zero(), R::of(1.0));
         let (half_a, half_b) = (left.half[axis][1], right.half[axis][0]);
-        let closed = (left.held | left.void) & (right.held | right.void);
-        let held = left.held | right.held;
-        let mut flux = Flux { mass: zero, left: [zero; D], right: [zero; D], held };
-        if R::any(!closed) {
+        let gate = left.gate.and(right.gate);
+        let mut flux = Flux { mass: zero, left: [zero; D], right: [zero; D], gate };
+        let all_open = !R::any(!gate.is_open());
+        if all_open || R::any(left.gate.is_open() | right.gate.is_open()) {
             let u_a = left.spread[axis].velocity(Towards::Hi, left.u);
             let u_b = right.spread[axis].velocity(Towards::Lo, right.u);
             let both = half_a.push + half_b.push;
             let (mut share_a, mut share_b, mut push_a, mut push_b) = (one, one, both, both);
-            if R::any(held) {
+            if !all_open {
+                let (left_held, right_held) = (left.gate.is_held(), right.gate.is_held());
                 // Into a held cell goes only what is carried there, the rest of the density is reflected. It feels its
                 // neighbours' thickness through its pull; of the flux it takes the impact.
-                share_a = R::select(right.held, left.carried(axis, Towards::Hi), one);
-                share_b = R::select(left.held, right.carried(axis, Towards::Lo), one);
-                let reflected_a = R::select(right.held, half_a.reflected(u_a[axis], share_a), both);
-                let reflected_b = R::select(left.held, half_b.reflected(u_b[axis], share_b), both);
-                push_a = R::select(left.held, zero, reflected_a);
-                push_b = R::select(right.held, zero, reflected_b);
+                share_a = R::select(right_held, left.carried(axis, Towards::Hi), one);
+                share_b = R::select(left_held, right.carried(axis, Towards::Lo), one);
+                let reflected_a = R::select(right_held, half_a.reflected(u_a[axis], share_a), both);
+                let reflected_b = R::select(left_held, half_b.reflected(u_b[axis], share_b), both);
+                push_a = R::select(left_held, zero, reflected_a);
+                push_b = R::select(right_held, zero, reflected_b);
             }
             let (mass_a, mass_b) = (half_a.mass * share_a, half_b.mass * share_b);
             let turned_a = B::turn(u_a, &left.plane, &right.plane);
@@ -443,62 +496,76 @@ where
     #[inline(always)]
     fn update(
         &self,
-        here: &Cell<Flow<D, R>, B>,
+        window: &impl Window<D, R, Flow<D, R>, B>,
         edges: &Self::Edges,
         faces: &[Faces<Flux<D, R>>; D],
         _corners: &[[(); 2]; 2],
-        spacing: &Spacing<D, R>,
         dt: R,
     ) -> Flow<D, R> {
-        let (zero, per) = (R::zero(), spacing.per);
-        let Flow { h, q } = here.state;
-        let bed = &here.ground;
-        let (mut gone, mut lost) = (zero, [zero; D]);
+        let near = window.cross();
+        let (zero, per) = (R::zero(), near.spacing.per);
+        let Cell { state, ground: bed } = near.here;
+        let Flow { h, q } = state;
+        let (mut gone, mut lost, mut gates) = (zero, [zero; D], zero);
         unroll!(axis in D => {
             let Faces { lo, hi } = &faces[axis];
             let lambda = dt * per[axis];
             gone = gone + lambda * (hi.mass - lo.mass);
+            gates = gates + (lo.gate.0 + hi.gate.0);
             unroll!(k in D => {
                 lost[k] = lost[k] + lambda * (hi.left[k] - lo.right[k]);
             });
         });
-        // What holds itself or is bare, and is not touched, stays: leave out the work.
-        let mut idle = (edges.held | edges.void) & gone.same(zero);
-        unroll!(k in D => {
-            idle = idle & lost[k].same(zero) & q[k].same(zero);
-        });
-        if !R::any(!idle) {
-            return here.state;
+        let all_open = !R::any(!gates.same(zero));
+        if !all_open {
+            // What holds itself or is bare, and is not touched, stays: leave out the work.
+            let mut idle = !edges.gate.is_open() & gone.same(zero);
+            unroll!(k in D => {
+                idle = idle & lost[k].same(zero) & q[k].same(zero);
+            });
+            if !R::any(!idle) {
+                return state;
+            }
         }
         // One difference of symmetric sums: the axes can be exchanged to the last bit.
         let new = normal(h - gone);
         let mut moved: [R; D] = each!(k => q[k] - lost[k]);
         // The depth under the source: the new one keeps draining cells bounded; at second order the old one
         // keeps the map a forward-Euler step wherever the depth does not halve.
-        let depth = if self.slopes { h.min(new + new) } else { new }.positive();
-        let (mut rise, mut weight, mut bend) = ([[zero; D]; 2], [[zero; D]; 2], [zero; D]);
+        let depth = if LIMITED && self.slopes { h.min(new + new) } else { new }.positive();
+        let (mut lo, mut hi, mut bend) = ([zero; D], [zero; D], [R::of(1.0); D]);
+        let (mut weight_lo, mut weight_hi) = ([zero; D], [zero; D]);
         unroll!(axis in D => {
-            let Faces { lo, hi } = &faces[axis];
-            rise[0][axis] = edges.beside(axis, Towards::Lo, lo.held);
-            rise[1][axis] = edges.beside(axis, Towards::Hi, hi.held);
-            // The pressure in the flux, and what mends it, goes where a cell of the face is held.
-            weight[0][axis] = R::select(lo.held, zero, edges.weight[axis][0]);
-            weight[1][axis] = R::select(hi.held, zero, edges.weight[axis][1]);
-            let half = R::of(0.5);
-            bend[axis] = R::select(lo.held, zero, half) + R::select(hi.held, zero, half);
+            let rise = if all_open { Self::thick_rise(&near, axis) } else { self.rise(&near, axis) };
+            [lo[axis], hi[axis]] = rise.climb;
+            [weight_lo[axis], weight_hi[axis]] = rise.weight;
+            if !all_open {
+                // The flux carries no pressure where a cell of the face is held, and what mends it goes with it.
+                let (at_lo, at_hi) = (faces[axis].lo.gate.is_held(), faces[axis].hi.gate.is_held());
+                lo[axis] = R::select(at_lo, rise.whole[0], lo[axis]);
+                hi[axis] = R::select(at_hi, rise.whole[1], hi[axis]);
+                weight_lo[axis] = R::select(at_lo, zero, weight_lo[axis]);
+                weight_hi[axis] = R::select(at_hi, zero, weight_hi[axis]);
+                let half = R::of(0.5);
+                bend[axis] = R::select(at_lo, zero, half) + R::select(at_hi, zero, half);
+            }
         });
-        let pull = bed.pull(rise[0], rise[1], per);
-        let cross = bed.cross(weight[0], weight[1], per);
+        let mut pull = bed.pull(lo, hi, per);
+        if B::BENT {
+            let cross = bed.cross(weight_lo, weight_hi, per);
+            unroll!(k in D => {
+                pull[k] = pull[k] + cross[k] + bed.bend(k) * h * bend[k];
+            });
+        }
         unroll!(k in D => {
-            let bent = bed.bend(k) * h * bend[k];
-            moved[k] = moved[k] + dt * depth * (pull[k] + cross[k] + bent);
+            moved[k] = moved[k] + dt * depth * pull[k];
         });
 
         let thickness = bed.thickness(new).max(R::of(f64::MIN_POSITIVE));
         let old = edges.u;
         let speed = bed.square(old).sqrt();
         let law = self.friction.resistance(thickness, speed, bed.load(old), bed.weight_at_rest());
-        let still = edges.still;
+        let still = state.is_still();
         let mut dry = law.dry;
         if R::any(still) {
             let resting = law.holding * R::of(Self::SLACK) + bed.rounding(h, largest(per));
@@ -520,7 +587,7 @@ where
             keep = keep * (R::of(2.0) / (R::of(1.0) + (R::of(1.0) + R::of(4.0) * z).sqrt()));
         }
         let mut slowed: [R; D] = each!(k => R::select(stops, zero, moved[k] * keep));
-        if self.slopes {
+        if LIMITED && self.slopes {
             // Along the new velocity friction is first order in time where the flow turns. Where a step takes at most
             // a quarter of the momentum it acts along the old one, as in a forward-Euler step.
             let taken = dt * depth * (law.dry + law.drag * (speed * speed));
@@ -559,8 +626,8 @@ where
     /// surface or the bed bends, the pull by central differences may exceed the bound, or the drop to one neighbour,
     /// while the forces through the faces do not, and held neighbours take nothing from it.
     #[inline(always)]
-    fn rests(&self, edges: &Self::Edges) -> R::Mask {
-        edges.still | edges.void
+    fn rests(&self, here: &Cell<Flow<D, R>, B>) -> R::Mask {
+        self.is_idle(here)
     }
     #[inline(always)]
     fn outside(&self, ground: &B) -> R::Mask {

@@ -21,12 +21,19 @@ pub trait Bed<const D: usize, R: Real>: Parts<R> {
     type On<L: Real>: Bed<D, L>;
     /// What a face must know of the bed to turn a velocity into it.
     type Plane: Parts<R>;
+    /// Is it more than a plane, so that [`Bed::cross`] or [`Bed::bend`] are not 0?
+    const BENT: bool;
     /// See [`Bed::turn`].
     fn plane(&self) -> Self::Plane;
     /// Pressure coefficient along `axis`: P = beta h^2/2.
     fn beta(&self, axis: usize) -> R;
     /// psi at the neighbour minus psi here, depths `h_there` and `h`; `dx` is their distance.
-    fn rise(&self, axis: usize, towards: Towards, there: &Self, h: R, h_there: R, dx: R) -> R;
+    #[inline(always)]
+    fn rise(&self, axis: usize, towards: Towards, there: &Self, h: R, h_there: R, dx: R) -> R {
+        self.climb(axis, towards, there, dx) + self.weight(there, h, h_there)
+    }
+    /// The part of the rise that the bed makes.
+    fn climb(&self, axis: usize, towards: Towards, there: &Self, dx: R) -> R;
     /// The part of the rise that the momentum flux carries as pressure.
     fn weight(&self, there: &Self, h: R, h_there: R) -> R;
     /// Acceleration -M (hi - lo)/(2 dx) of the rises towards both neighbours of each axis.
@@ -105,6 +112,7 @@ unsafe impl<const D: usize, R: Real> Parts<R> for Chute<D, R> {
 impl<const D: usize, R: Real> Bed<D, R> for Chute<D, R> {
     type On<L: Real> = Chute<D, L>;
     type Plane = ();
+    const BENT: bool = false;
     #[inline(always)]
     fn plane(&self) {}
     #[inline(always)]
@@ -112,12 +120,11 @@ impl<const D: usize, R: Real> Bed<D, R> for Chute<D, R> {
         self.beta
     }
     #[inline(always)]
-    fn rise(&self, axis: usize, towards: Towards, there: &Self, h: R, h_there: R, dx: R) -> R {
+    fn climb(&self, axis: usize, towards: Towards, _there: &Self, dx: R) -> R {
         let fall = self.tilt[axis] * dx;
-        let weight = self.weight(there, h, h_there);
         match towards {
-            Towards::Hi => weight - fall,
-            Towards::Lo => weight + fall,
+            Towards::Hi => -fall,
+            Towards::Lo => fall,
         }
     }
     #[inline(always)]
@@ -309,6 +316,7 @@ parts!([const D: usize, R: Real] Tangent<D, R> { slope: [R; D], cos: R } masks {
 impl<const D: usize, R: Real> Bed<D, R> for Terrain<D, R> {
     type On<L: Real> = Terrain<D, L>;
     type Plane = Tangent<D, R>;
+    const BENT: bool = true;
     #[inline(always)]
     fn plane(&self) -> Tangent<D, R> {
         Tangent { slope: self.slope, cos: self.cos }
@@ -319,8 +327,8 @@ impl<const D: usize, R: Real> Bed<D, R> for Terrain<D, R> {
         self.fall * self.cos * (R::of(1.0) - s * s)
     }
     #[inline(always)]
-    fn rise(&self, _axis: usize, _towards: Towards, there: &Self, h: R, h_there: R, _dx: R) -> R {
-        (there.level - self.level) + self.weight(there, h, h_there)
+    fn climb(&self, _axis: usize, _towards: Towards, there: &Self, _dx: R) -> R {
+        there.level - self.level
     }
     #[inline(always)]
     fn weight(&self, there: &Self, h: R, h_there: R) -> R {

@@ -4,12 +4,12 @@
 //! two dimensions on a plane by applying the fluxes along each axis, the (1, 2, 1)/4 depth per axis and static
 //! friction as the projection onto a disc.
 
-use super::flux::{Half, halves};
+use super::flux::{Density, Half, halves};
 use super::friction::{Coulomb, Friction};
 use super::ground::{Bed, Chute, Towards};
 use super::{Flow, normal};
 use crate::real::{Real, dot, each, unroll};
-use crate::scheme::{Cell, Faces, Scheme, Side, Spacing, Watch, Window, Work, parts};
+use crate::scheme::{Cell, Faces, Near, Scheme, Side, Spacing, Watch, Window, Work, parts};
 
 /// The depth that enters the half moments at a face.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -78,33 +78,35 @@ pub const VERFAHREN_4: Kinetic = Kinetic { blend: true, ..VERFAHREN_3 };
 /// Verfahren 5 = Scheme 3.
 pub const VERFAHREN_5: Kinetic = Kinetic { moving: FaceDepth::Own, ..VERFAHREN_4 };
 
-/// What a cell offers to its faces and keeps for its update.
+/// What a cell offers to its faces.
 #[derive(Clone, Copy, Debug)]
 pub struct Edges<const D: usize, R> {
-    here: Flow<D, R>,
+    h: R,
     u: [R; D],
-    /// The halves at the cell's own depth, where the scheme takes them, along each axis.
+    /// The halves at the cell's own depth, where the moving flux takes them, along each axis.
     halves: [[Half<R>; 2]; D],
     beta: R,
-    /// beta D h - tilt per axis: the pull that friction must hold, as an acceleration.
-    excess: [R; D],
-    smoothed: [R; D],
 }
 
-parts!([const D: usize, R: Real] Edges<D, R> {
-    here: Flow<D, R>, u: [R; D], halves: [[Half<R>; 2]; D], beta: R, excess: [R; D], smoothed: [R; D]
-} masks {});
-
-/// Mass and momentum through a face, once with the moving and once with the resting cell's face depth.
-#[derive(Clone, Copy, Debug)]
-pub struct Flux<const D: usize, R> {
-    moving: Flow<D, R>,
-    resting: Flow<D, R>,
-}
-
-parts!([const D: usize, R: Real] Flux<D, R> { moving: Flow<D, R>, resting: Flow<D, R> } masks {});
+parts!([const D: usize, R: Real] Edges<D, R> { h: R, u: [R; D], halves: [[Half<R>; 2]; D], beta: R } masks {});
 
 impl Kinetic {
+    /// What a cell offers to its faces under a face depth.
+    #[inline(always)]
+    fn edges<const D: usize, R: Real>(
+        depth: FaceDepth,
+        Cell { state, ground }: &Cell<Flow<D, R>, Chute<D, R>>,
+        prime: &[Density<R>; D],
+    ) -> Edges<D, R> {
+        let own = depth == FaceDepth::Own;
+        Edges {
+            h: state.h,
+            u: each!(k => prime[k].u),
+            halves: each!(k => if own { prime[k].halves(state.h) } else { [Half::none(); 2] }),
+            beta: ground.beta,
+        }
+    }
+
     /// F or F~ through the face between `left` and `right`.
     #[inline(always)]
     fn through<const D: usize, R: Real>(
@@ -113,16 +115,47 @@ impl Kinetic {
         left: &Edges<D, R>,
         right: &Edges<D, R>,
     ) -> Flow<D, R> {
-        let mean = (left.here.h + right.here.h) * R::of(0.5);
+        let mean = (left.h + right.h) * R::of(0.5);
         let (out, back) = match depth {
             FaceDepth::Own => (left.halves[axis][1], right.halves[axis][0]),
             FaceDepth::Mean => {
-                (halves(mean, left.u[axis], left.beta).1, halves(mean, right.u[axis], right.beta).0)
+                (halves(mean, left.u[axis], left.beta)[1], halves(mean, right.u[axis], right.beta)[0])
             }
         };
         let mut q: [R; D] = each!(k => out.mass * left.u[k] + back.mass * right.u[k]);
         q[axis] = q[axis] + (out.push + back.push);
         Flow { h: out.mass + back.mass, q }
+    }
+
+    /// What passes the faces of a cell with the face depth of a resting one.
+    #[inline(always)]
+    fn resting_faces<const D: usize, R: Real>(
+        &self,
+        near: &Near<D, R, Flow<D, R>, Chute<D, R>>,
+    ) -> [Faces<Flow<D, R>>; D] {
+        let here = Self::edges(self.resting, &near.here, &self.prime(&near.here));
+        each!(axis => {
+            let (lo, hi) = (&near.lo[axis], &near.hi[axis]);
+            let lo = Self::edges(self.resting, lo, &self.prime(lo));
+            let hi = Self::edges(self.resting, hi, &self.prime(hi));
+            Faces {
+                lo: Self::through(self.resting, axis, &lo, &here),
+                hi: Self::through(self.resting, axis, &here, &hi),
+            }
+        })
+    }
+
+    /// beta D h - tilt per axis: the pull that friction must hold, as an acceleration.
+    #[inline(always)]
+    fn excess<const D: usize, R: Real>(near: &Near<D, R, Flow<D, R>, Chute<D, R>>) -> [R; D] {
+        let Cell { state, ground } = near.here;
+        let (size, lo, hi) = (near.spacing.size, &near.lo, &near.hi);
+        let rise_lo: [R; D] =
+            each!(k => ground.rise(k, Towards::Lo, &lo[k].ground, state.h, lo[k].state.h, size[k]));
+        let rise_hi: [R; D] =
+            each!(k => ground.rise(k, Towards::Hi, &hi[k].ground, state.h, hi[k].state.h, size[k]));
+        let pull = ground.pull(rise_lo, rise_hi, near.spacing.per);
+        each!(k => -pull[k])
     }
 }
 
@@ -143,8 +176,10 @@ fn divergence<const D: usize, R: Real>(faces: &[Faces<Flow<D, R>>; D], lambda: [
 impl<const D: usize, R: Real> Scheme<D, R> for Kinetic {
     type State = Flow<D, R>;
     type Ground = Chute<D, R>;
+    type Prime = [Density<R>; D];
     type Edges = Edges<D, R>;
-    type Flux = Flux<D, R>;
+    /// Mass and momentum, with the face depth of a moving cell.
+    type Flux = Flow<D, R>;
     type Corner = ();
 
     #[inline(always)]
@@ -153,33 +188,23 @@ impl<const D: usize, R: Real> Scheme<D, R> for Kinetic {
     }
 
     #[inline(always)]
-    fn reconstruct(&self, window: &impl Window<D, R, Flow<D, R>, Chute<D, R>>) -> Edges<D, R> {
-        let near = window.cross();
-        let Cell { state, ground } = near.here;
-        let lo: [R; D] = each!(k => near.lo[k].state.h);
-        let hi: [R; D] = each!(k => near.hi[k].state.h);
-        let (size, per) = (near.spacing.size, near.spacing.per);
-        let rise_lo = each!(k => ground.rise(k, Towards::Lo, &near.lo[k].ground, state.h, lo[k], size[k]));
-        let rise_hi = each!(k => ground.rise(k, Towards::Hi, &near.hi[k].ground, state.h, hi[k], size[k]));
-        let pull = ground.pull(rise_lo, rise_hi, per);
+    fn prime(&self, Cell { state, ground }: &Cell<Flow<D, R>, Chute<D, R>>) -> [Density<R>; D] {
         let u = state.velocity();
-        let own = self.moving == FaceDepth::Own || self.resting == FaceDepth::Own;
-        Edges {
-            here: state,
-            u,
-            halves: each!(k => if own { halves(state.h, u[k], ground.beta).into() } else { [Half::none(); 2] }),
-            beta: ground.beta,
-            excess: each!(k => -pull[k]),
-            smoothed: each!(k => ((lo[k] + hi[k]) + (state.h + state.h)) * R::of(0.25)),
-        }
+        each!(axis => Density::new(state.h, u[axis], ground.beta))
     }
 
     #[inline(always)]
-    fn flux(&self, axis: usize, left: &Edges<D, R>, right: &Edges<D, R>) -> Flux<D, R> {
-        let moving = Self::through(self.moving, axis, left, right);
-        let resting =
-            if self.resting == self.moving { moving } else { Self::through(self.resting, axis, left, right) };
-        Flux { moving, resting }
+    fn reconstruct(
+        &self,
+        window: &impl Window<D, R, Flow<D, R>, Chute<D, R>>,
+        prime: &[Density<R>; D],
+    ) -> Edges<D, R> {
+        Self::edges(self.moving, &window.at([0; D]), prime)
+    }
+
+    #[inline(always)]
+    fn flux(&self, axis: usize, left: &Edges<D, R>, right: &Edges<D, R>) -> Flow<D, R> {
+        Self::through(self.moving, axis, left, right)
     }
 
     #[inline(always)]
@@ -187,60 +212,69 @@ impl<const D: usize, R: Real> Scheme<D, R> for Kinetic {
     #[inline(always)]
     fn update(
         &self,
-        here: &Cell<Flow<D, R>, Chute<D, R>>,
-        edges: &Edges<D, R>,
-        faces: &[Faces<Flux<D, R>>; D],
+        window: &impl Window<D, R, Flow<D, R>, Chute<D, R>>,
+        _edges: &Edges<D, R>,
+        faces: &[Faces<Flow<D, R>>; D],
         _corners: &[[(); 2]; 2],
-        spacing: &Spacing<D, R>,
         dt: R,
     ) -> Flow<D, R> {
-        let Flow { h, q } = here.state;
-        let ground = &here.ground;
-        let lambda: [R; D] = each!(k => dt * spacing.per[k]);
-        let zero = R::zero();
-        let moving: [Faces<Flow<D, R>>; D] =
-            each!(axis => Faces { lo: faces[axis].lo.moving, hi: faces[axis].hi.moving });
-        let resting: [Faces<Flow<D, R>>; D] =
-            each!(axis => Faces { lo: faces[axis].lo.resting, hi: faces[axis].hi.resting });
-        let (moving, resting) = (divergence(&moving, lambda), divergence(&resting, lambda));
+        let near = window.cross();
+        let Cell { state: Flow { h, q }, ground } = near.here;
+        let lambda: [R; D] = each!(k => dt * near.spacing.per[k]);
+        let (zero, one) = (R::zero(), R::of(1.0));
+        let moving = divergence(faces, lambda);
         let moving_h = normal(h - moving.h);
-        let resting_h = normal(h - resting.h);
 
         // g(q) = tilt - R q/|q|
         let bound = self.friction.resistance(h, zero, ground.cos, ground.cos).holding;
         // A momentum whose square underflows has no direction: it counts as none.
         let size = dot(q, q).sqrt();
         let still = size.same(zero);
-        let per = R::of(1.0) / R::select(still, R::of(1.0), size);
+        let per = one / R::select(still, one, size);
         let g: [R; D] = each!(k => ground.tilt[k] - bound * (q[k] * per));
-
-        // g~: the static force per mass, tilt plus the excess cut to the disc of radius R
-        let excess = dot(edges.excess, edges.excess).sqrt();
-        let over = bound.lt(excess);
-        let cut = R::select(over, bound / R::select(over, excess, R::of(1.0)), R::of(1.0));
-        let held: [R; D] = each!(k => ground.tilt[k] + edges.excess[k] * cut);
-
         let square = dot(g, g);
-        let slow = size.lt(dt * square.sqrt() * moving_h) | still;
         let rests = match self.rest {
             RestTest::Still => still,
-            RestTest::Slow => slow,
+            // |q| < dt |g| h
+            RestTest::Slow => {
+                let most = dt * moving_h;
+                still | (zero.lt(most) & (size * size).lt(square * (most * most)))
+            }
         };
+        let moved =
+            Flow { h: moving_h, q: each!(k => q[k] - moving.q[k] + dt * g[k] * moving_h) };
+        if !R::any(rests) {
+            return moved;
+        }
+
+        let resting = if self.resting == self.moving {
+            moving
+        } else {
+            divergence(&self.resting_faces(&near), lambda)
+        };
+        let resting_h = normal(h - resting.h);
+        // g~: the static force per mass, tilt plus the excess cut to the disc of radius R
+        let by_neighbours = Self::excess(&near);
+        let excess = dot(by_neighbours, by_neighbours).sqrt();
+        let over = bound.lt(excess);
+        let cut = R::select(over, bound / R::select(over, excess, one), one);
+        let held: [R; D] = each!(k => ground.tilt[k] + by_neighbours[k] * cut);
         // 1 - mu with mu = -q.g/(dt |g|^2 h^{n+1}); q = 0 is rest in words
         let weight = dt * square * moving_h;
         let no_weight = weight.same(zero) | still;
-        let blend =
-            R::of(1.0) + R::select(no_weight, zero, dot(q, g) / R::select(no_weight, R::of(1.0), weight));
+        let blend = one + R::select(no_weight, zero, dot(q, g) / R::select(no_weight, one, weight));
         let static_depth = match self.static_depth {
             StaticDepth::New => [resting_h; D],
-            StaticDepth::Smoothed => edges.smoothed,
+            StaticDepth::Smoothed => each!(k => {
+                ((near.lo[k].state.h + near.hi[k].state.h) + (h + h)) * R::of(0.25)
+            }),
         };
         Flow {
             h: R::select(rests, resting_h, moving_h),
             q: each!(k => {
                 let source = dt * held[k] * static_depth[k];
                 let rest = if self.blend { blend * source } else { q[k] + source };
-                R::select(rests, rest - resting.q[k], q[k] - moving.q[k] + dt * g[k] * moving_h)
+                R::select(rests, rest - resting.q[k], moved.q[k])
             }),
         }
     }
@@ -262,8 +296,8 @@ impl<const D: usize, R: Real> Scheme<D, R> for Kinetic {
     }
     /// The published schemes prove no rest; a dry cell counts.
     #[inline(always)]
-    fn rests(&self, edges: &Edges<D, R>) -> R::Mask {
-        edges.here.h.same(R::zero())
+    fn rests(&self, here: &Cell<Flow<D, R>, Chute<D, R>>) -> R::Mask {
+        here.state.h.same(R::zero())
     }
     #[inline(always)]
     fn outside(&self, ground: &Chute<D, R>) -> R::Mask {
@@ -271,13 +305,13 @@ impl<const D: usize, R: Real> Scheme<D, R> for Kinetic {
     }
     /// The flux of the moving depth; a resting edge cell of Verfahren 5 books the other one (erratum 5).
     #[inline(always)]
-    fn booked(&self, flux: &Flux<D, R>, _side: Side) -> R {
-        flux.moving.h
+    fn booked(&self, flux: &Flow<D, R>, _side: Side) -> R {
+        flux.h
     }
     fn margin(&self, window: &impl Window<D, R, Flow<D, R>, Chute<D, R>>) -> R {
         let near = window.cross();
         let Cell { state, ground } = near.here;
-        let excess = self.reconstruct(window).excess;
+        let excess = Self::excess(&near);
         let bound = self.friction.resistance(state.h, R::zero(), ground.cos, ground.cos).holding;
         let none = state.h.le(R::zero()) | bound.le(R::zero());
         R::select(none, R::zero(), dot(excess, excess).sqrt() / R::select(none, R::of(1.0), bound))

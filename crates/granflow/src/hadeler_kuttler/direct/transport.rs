@@ -83,7 +83,7 @@ impl<const D: usize> Slope<'_, D> {
     fn edges(&self, place: usize) -> [Edges<D, f64>; 3] {
         let spacing = Spacing::new(self.size);
         [(0.0, true), (1.0, false), (0.0, false)]
-            .map(|(v, poured)| FIRST_ORDER.reconstruct(&Even { slope: self, place, spacing, v, poured }))
+            .map(|(v, poured)| FIRST_ORDER.reconstruct(&Even { slope: self, place, spacing, v, poured }, &()))
     }
 
     /// The faces below each place.
