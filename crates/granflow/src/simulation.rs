@@ -534,12 +534,15 @@ impl<const D: usize, S: Scheme<D, f64>> Simulation<D, S> {
                 continue;
             }
             let columns = wide.min(across - number % across);
-            let width = (0..columns).take_while(|k| self.waiting[number + k]).count();
+            // Where the ground is the same everywhere it is read once.
+            let even = self.tiles[number].even;
+            let alike = |waiting: &[bool], tile: usize| waiting[tile] && self.tiles[tile].even == even;
+            let width = (0..columns).take_while(|k| alike(&self.waiting, number + k)).count();
             let from = self.awake.len();
             let mut row = number;
             for _ in 0..high {
                 let tiles = row..row + width;
-                if tiles.end > self.waiting.len() || !self.waiting[tiles.clone()].iter().all(|waits| *waits) {
+                if tiles.end > self.waiting.len() || !tiles.clone().all(|tile| alike(&self.waiting, tile)) {
                     break;
                 }
                 self.waiting[tiles.clone()].fill(false);

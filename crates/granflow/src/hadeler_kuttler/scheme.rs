@@ -46,38 +46,78 @@ const TWO: usize = 2;
 /// Two slopes that sum to less are level: their sign is rounding.
 const LEVEL: f64 = 1e-12;
 
-/// How a value varies across a cell.
-pub trait Profile<R: Real>: Parts<R> {
+/// How the values of a cell vary across it.
+pub trait Spread<const D: usize, R: Real>: Parts<R> {
     /// Not at all.
-    fn flat(mid: R) -> Self;
-    /// By `across` in all, where it can.
-    fn with(self, across: R) -> Self;
-    /// In the middle of the cell.
-    fn mid(&self) -> R;
-    /// What it rises from the middle to the upper end.
-    fn half(&self) -> R;
-    /// At the lower end.
+    fn none() -> Self;
+    /// By limited differences, where it can.
+    fn by(halves: Halves<D, R>) -> Self;
+    /// By what, if it does.
+    fn halves(&self) -> Option<&Halves<D, R>>;
+}
+
+impl<const D: usize, R: Real> Spread<D, R> for () {
     #[inline(always)]
-    fn lo(&self) -> R {
-        self.mid() - self.half()
-    }
-    /// At the upper end.
+    fn none() {}
     #[inline(always)]
-    fn hi(&self) -> R {
-        self.mid() + self.half()
+    fn by(_: Halves<D, R>) {}
+    #[inline(always)]
+    fn halves(&self) -> Option<&Halves<D, R>> {
+        None
     }
 }
 
-/// A value that does not vary.
+/// Half the limited differences across a cell: what a value rises from its middle to its upper end, along each axis.
 #[derive(Clone, Copy, Debug)]
-pub struct Level<R>(R);
+pub struct Halves<const D: usize, R> {
+    v: [R; D],
+    slope: [R; D],
+    /// Not yet adapted.
+    edge: [R; D],
+    /// Theta of the cell, 1 beside the table.
+    theta: R,
+}
+parts!([const D: usize, R: Real] Halves<D, R> { v: [R; D], slope: [R; D], edge: [R; D], theta: R } masks {});
+
+impl<const D: usize, R: Real> Spread<D, R> for Halves<D, R> {
+    #[inline(always)]
+    fn none() -> Self {
+        let none = [R::zero(); D];
+        Halves { v: none, slope: none, edge: none, theta: R::of(1.0) }
+    }
+    #[inline(always)]
+    fn by(halves: Halves<D, R>) -> Self {
+        halves
+    }
+    #[inline(always)]
+    fn halves(&self) -> Option<&Halves<D, R>> {
+        Some(self)
+    }
+}
+
+/// How values vary across the cells of a scheme.
+pub trait Kind: Copy + Send + Sync + 'static {
+    /// In a cell.
+    type Spread<const D: usize, R: Real>: Spread<D, R>;
+}
+impl Kind for Varies<false> {
+    type Spread<const D: usize, R: Real> = ();
+}
+impl Kind for Varies<true> {
+    type Spread<const D: usize, R: Real> = Halves<D, R>;
+}
+
+/// Where a cell and its lower left node lie. A number, so that a few can be asked at once: 0 is on the table, the node free
+/// to rise.
+#[derive(Clone, Copy, Debug)]
+struct Place<R>(R);
 
 // SAFETY: part 0 is below 1.
-unsafe impl<R: Real> Parts<R> for Level<R> {
+unsafe impl<R: Real> Parts<R> for Place<R> {
     const COUNT: usize = 1;
     #[inline(always)]
     fn gather(part: impl Fn(usize) -> R) -> Self {
-        Level(part(0))
+        Place(part(0))
     }
     #[inline(always)]
     fn scatter(self, mut put: impl FnMut(usize, R)) {
@@ -85,86 +125,94 @@ unsafe impl<R: Real> Parts<R> for Level<R> {
     }
 }
 
-impl<R: Real> Profile<R> for Level<R> {
-    #[inline(always)]
-    fn flat(mid: R) -> Self {
-        Level(mid)
-    }
-    #[inline(always)]
-    fn with(self, _across: R) -> Self {
-        self
-    }
-    #[inline(always)]
-    fn mid(&self) -> R {
-        self.0
-    }
-    #[inline(always)]
-    fn half(&self) -> R {
-        R::zero()
-    }
-}
+impl<R: Real> Place<R> {
+    const PINNED: f64 = 1.0;
+    const OUTSIDE: f64 = 2.0;
 
-/// A value and its limited difference across the cell.
-#[derive(Clone, Copy, Debug)]
-pub struct Linear<R> {
-    mid: R,
-    across: R,
-}
-parts!([R: Real] Linear<R> { mid: R, across: R } masks {});
-
-impl<R: Real> Profile<R> for Linear<R> {
     #[inline(always)]
-    fn flat(mid: R) -> Self {
-        Linear { mid, across: R::zero() }
+    fn of<const D: usize>(ground: &Ground<D, R>) -> Self {
+        let zero = R::zero();
+        let outside = R::select(zero.lt(ground.inside), zero, R::of(Self::OUTSIDE));
+        Place(outside + R::select(zero.lt(ground.weight), zero, R::of(Self::PINNED)))
     }
     #[inline(always)]
-    fn with(self, across: R) -> Self {
-        Linear { across, ..self }
+    fn inside(self) -> R::Mask {
+        self.0.lt(R::of(Self::OUTSIDE))
     }
+    /// The lower left node is free to rise.
     #[inline(always)]
-    fn mid(&self) -> R {
-        self.mid
+    fn free(self) -> R::Mask {
+        self.0.same(R::zero()) | self.0.same(R::of(Self::OUTSIDE))
     }
-    #[inline(always)]
-    fn half(&self) -> R {
-        self.across * R::of(0.5)
-    }
-}
-
-/// How values vary across the cells of a scheme.
-pub trait Kind: Copy + Send + Sync + 'static {
-    /// A value.
-    type Profile<R: Real>: Profile<R>;
-}
-impl Kind for Varies<false> {
-    type Profile<R: Real> = Level<R>;
-}
-impl Kind for Varies<true> {
-    type Profile<R: Real> = Linear<R>;
 }
 
 /// What a cell offers to its faces and corners.
 #[derive(Clone, Copy, Debug)]
-pub struct Edges<const D: usize, R: Real, P = Linear<R>> {
-    /// Rolling layer, along each axis.
-    v: [P; D],
+pub struct Edges<const D: usize, R: Real, S = Halves<D, R>> {
+    /// Rolling layer.
+    v: R,
     /// Slope of the surface in the cell, along each axis.
-    slope: [P; D],
-    /// Slope along the cell's lower edge of each axis, not yet adapted.
-    edge: [P; D],
+    slope: [R; D],
+    /// Slope along the cell's lower edge of each axis.
+    edge: [R; D],
     /// B at the face less B at the cell's end, (h f - difference of B)/2: what is poured on the half cell.
     poured: [R; D],
-    /// Theta of the cell, 1 beside the table.
-    theta: R,
     /// 1 where the face at the lower end of an axis is a wall.
     wall: [R; D],
-    inside: R::Mask,
-    /// The lower left node is free to rise.
-    free: R::Mask,
+    place: Place<R>,
+    spread: S,
 }
-parts!([const D: usize, R: Real, P: Profile<R>] Edges<D, R, P> {
-    v: [P; D], slope: [P; D], edge: [P; D], poured: [R; D], theta: R, wall: [R; D]
-} masks { inside, free });
+parts!([const D: usize, R: Real, S: Spread<D, R>] Edges<D, R, S> {
+    v: R, slope: [R; D], edge: [R; D], poured: [R; D], wall: [R; D], place: Place<R>, spread: S
+} masks {});
+
+/// The two ends of a cell along an axis.
+#[derive(Clone, Copy)]
+enum End {
+    Lo,
+    Hi,
+}
+
+/// A value at one end, which rises by `half` from the middle to the upper one.
+#[inline(always)]
+fn at_end<R: Real>(end: End, mid: R, half: R) -> R {
+    match end {
+        End::Lo => mid - half,
+        End::Hi => mid + half,
+    }
+}
+
+impl<const D: usize, R: Real, S: Spread<D, R>> Edges<D, R, S> {
+    #[inline(always)]
+    fn v_at(&self, axis: usize, end: End) -> R {
+        self.spread.halves().map_or(self.v, |halves| at_end(end, self.v, halves.v[axis]))
+    }
+    #[inline(always)]
+    fn slope_at(&self, axis: usize, end: End) -> R {
+        let mid = self.slope[axis];
+        self.spread.halves().map_or(mid, |halves| at_end(end, mid, halves.slope[axis]))
+    }
+    /// Along the lower edge, by the smaller Theta of the two cells along it.
+    #[inline(always)]
+    fn edge_at(&self, axis: usize, end: End, beside: &Self) -> R {
+        let mid = self.edge[axis];
+        match (self.spread.halves(), beside.spread.halves()) {
+            (Some(here), Some(there)) => at_end(end, mid, here.edge[axis] * here.theta.min(there.theta)),
+            _ => mid,
+        }
+    }
+    /// Rolling layer at a corner, by its end of each axis.
+    #[inline(always)]
+    fn v_at_corner(&self, ends: [End; TWO]) -> R {
+        let Some(Halves { v, .. }) = self.spread.halves() else { return self.v };
+        // The axes are added first: they may be swapped without changing a bit.
+        let mut across = at_end(ends[0], R::zero(), v[0]);
+        if D > 1 {
+            across = across + at_end(ends[1], R::zero(), v[D - 1]);
+        }
+        self.v + across
+    }
+}
 
 /// Height of the surface at the lower left node of the cell at `offset`.
 #[inline(always)]
@@ -178,10 +226,10 @@ fn surface<const D: usize, R: Real>(
 
 /// The cell at `offset` with constant values.
 #[inline(always)]
-fn constant<const D: usize, R: Real, P: Profile<R>>(
+fn constant<const D: usize, R: Real, S: Spread<D, R>>(
     window: &impl Window<D, R, Pile<R>, Ground<D, R>>,
     offset: [isize; D],
-) -> Edges<D, R, P> {
+) -> Edges<D, R, S> {
     let Cell { state, ground } = window.at(offset);
     let Spacing { size, per, .. } = window.spacing();
     let half = R::of(0.5);
@@ -196,14 +244,13 @@ fn constant<const D: usize, R: Real, P: Profile<R>>(
         }
     });
     Edges {
-        v: [P::flat(state.v); D],
-        slope: each!(k => P::flat(slope[k])),
-        edge: each!(k => P::flat(edge[k])),
+        v: state.v,
+        slope,
+        edge,
         poured: each!(k => ground.source[k] * size[k] * half),
-        theta: R::of(1.0),
         wall: ground.wall,
-        inside: R::zero().lt(ground.inside),
-        free: R::zero().lt(ground.weight),
+        place: Place::of(&ground),
+        spread: S::none(),
     }
 }
 
@@ -229,33 +276,34 @@ fn has_edge<const D: usize, R: Real>(
 
 /// Limited differences of everything that varies (eqs. 16-18, 43), 0 beside the edge of the table.
 #[inline(always)]
-fn linear<const D: usize, R: Real, P: Profile<R>>(
+fn linear<const D: usize, R: Real, S: Spread<D, R>>(
     window: &impl Window<D, R, Pile<R>, Ground<D, R>>,
-    here: &Edges<D, R, P>,
+    here: &Edges<D, R, S>,
     theta: R,
-) -> Edges<D, R, P> {
-    let mut edges = Edges { theta, ..*here };
+) -> Edges<D, R, S> {
+    let half = R::of(0.5);
+    let mut edges = *here;
+    let none = [R::zero(); D];
+    let mut halves = Halves { v: none, slope: none, edge: none, theta };
     unroll!(axis in D => {
         let step = unit::<D>(axis);
-        let a: Edges<D, R, Level<R>> = constant(window, each!(k => -step[k]));
-        let b: Edges<D, R, Level<R>> = constant(window, step);
-        let smooth = a.inside & b.inside & here.inside;
-        let v = limited(smooth, a.v[axis].mid(), here.v[axis].mid(), b.v[axis].mid());
-        edges.v[axis] = here.v[axis].with(theta * v);
-        let slope = limited(smooth, a.slope[axis].mid(), here.slope[axis].mid(), b.slope[axis].mid());
-        edges.slope[axis] = here.slope[axis].with(theta * slope);
+        let a: Edges<D, R, ()> = constant(window, each!(k => -step[k]));
+        let b: Edges<D, R, ()> = constant(window, step);
+        let smooth = a.place.inside() & b.place.inside() & here.place.inside();
+        halves.v[axis] = theta * limited(smooth, a.v, here.v, b.v) * half;
+        halves.slope[axis] = theta * limited(smooth, a.slope[axis], here.slope[axis], b.slope[axis]) * half;
         // B rises by half of each cell's source between two centres.
         let (lo, mid, hi) = (a.poured[axis], here.poured[axis], b.poured[axis]);
         let rise = R::select(smooth, minmod(lo + mid, mid + hi), R::zero());
-        edges.poured[axis] = mid - theta * (mid - (mid - rise * R::of(0.5)));
+        edges.poured[axis] = mid - theta * (mid - (mid - rise * half));
         // An edge belongs to the table if one of the two cells along it does.
         let mut exist = smooth;
         if D > 1 {
             exist = has_edge(window, axis, -1) & has_edge(window, axis, 0) & has_edge(window, axis, 1);
         }
-        let edge = limited(exist, a.edge[axis].mid(), here.edge[axis].mid(), b.edge[axis].mid());
-        edges.edge[axis] = here.edge[axis].with(edge);
+        halves.edge[axis] = limited(exist, a.edge[axis], here.edge[axis], b.edge[axis]) * half;
     });
+    edges.spread = S::by(halves);
     edges
 }
 
@@ -270,7 +318,7 @@ impl<const LIMITED: bool> HadelerKuttler<LIMITED> {
         smallest: R,
     ) -> R {
         // around[y][x], from the neighbour with smaller coordinates; in one dimension the rows are the same.
-        let around: [[Edges<D, R, Level<R>>; 3]; 3] = each!(y => {
+        let around: [[Edges<D, R, ()>; 3]; 3] = each!(y => {
             each!(x => {
                 let at = [x as isize - 1, y as isize - 1];
                 constant(window, each!(k => at[k]))
@@ -318,64 +366,79 @@ fn sum<const D: usize>(a: [isize; D], b: [isize; D]) -> [isize; D] {
 
 /// H of a face less the value of B there (eqs. 10, 45): what flows towards smaller coordinates.
 #[inline(always)]
-fn flux<const D: usize, R: Real, P: Profile<R>>(
+fn flux<const D: usize, R: Real, S: Spread<D, R>>(
     axis: usize,
-    left: &Edges<D, R, P>,
-    right: &Edges<D, R, P>,
+    left: &Edges<D, R, S>,
+    right: &Edges<D, R, S>,
 ) -> R {
-    let zero = R::zero();
-    let (a, b) = (left.slope[axis].hi(), right.slope[axis].lo());
-    let (v_a, v_b) = (left.v[axis].hi(), right.v[axis].lo());
+    let (zero, one) = (R::zero(), R::of(1.0));
+    let (a, b) = (left.slope_at(axis, End::Hi), right.slope_at(axis, End::Lo));
+    let (v_a, v_b) = (left.v_at(axis, End::Hi), right.v_at(axis, End::Lo));
     let (poured_a, poured_b) = (left.poured[axis], right.poured[axis]);
-    let size = a.abs() + b.abs();
-    let level = size.lt(R::of(LEVEL));
-    let lean = R::select(level, zero, (a + b) / R::select(level, R::of(1.0), size));
+    // (a + b)/(|a| + |b|): a sign, where the two slopes do not point against each other.
+    let (sum, size) = (a + b, a.abs() + b.abs());
+    let mut lean = R::select(sum.lt(zero), -one, one);
+    let against = (a * b).lt(zero);
+    if R::any(against) {
+        lean = R::select(against, sum / R::select(against, size, one), lean);
+    }
+    lean = R::select(size.lt(R::of(LEVEL)), zero, lean);
     let poured = ((poured_b - poured_a) + lean * (poured_b + poured_a)) * R::of(0.5);
     let within = (b.positive() * v_b + a.min(zero) * v_a) + poured;
+    let rim = (left.place.0 + right.place.0) + right.wall[axis];
+    if !R::any(!rim.same(zero)) {
+        return within;
+    }
     // An open edge takes what comes and gives nothing; level ground leads over it.
     let over_left = b.positive() * v_b + R::select(b.lt(zero), zero, poured_b);
     let over_right = a.min(zero) * v_a - R::select(zero.lt(a), zero, poured_a);
-    let over = R::select(left.inside, over_right, over_left);
-    let passes = (left.inside | right.inside) & !zero.lt(right.wall[axis]);
-    R::select(left.inside & right.inside, within, R::select(passes, over, zero))
+    let (in_left, in_right) = (left.place.inside(), right.place.inside());
+    let over = R::select(in_left, over_right, over_left);
+    let passes = (in_left | in_right) & !zero.lt(right.wall[axis]);
+    R::select(in_left & in_right, within, R::select(passes, over, zero))
+}
+
+/// sqrt(x^2 + y^2) of two numbers >= 0; where one of them is 0 it is the other, without a root.
+#[inline(always)]
+fn length<R: Real>(x: R, y: R) -> R {
+    let both = R::zero().lt(x) & R::zero().lt(y);
+    let sum = x + y;
+    if R::any(both) { R::select(both, (x * x + y * y).sqrt(), sum) } else { sum }
 }
 
 /// G at a node (eq. 9; in two dimensions the largest over the cells around it, which keeps v >= 0 and is eq. 9 where
 /// nothing varies along one axis): what the standing layer loses, v (|grad u| - 1).
 #[inline(always)]
-fn corner<const D: usize, R: Real, P: Profile<R>>(around: [[&Edges<D, R, P>; 2]; 2]) -> R {
+fn corner<const D: usize, R: Real, S: Spread<D, R>>(around: [[&Edges<D, R, S>; 2]; 2]) -> R {
     let (zero, one) = (R::zero(), R::of(1.0));
     let [[_, below_right], [above_left, above_right]] = around;
-    let mut squares = [[zero; 2]; 2];
+    let mut steep = [[zero; 2]; 2];
     unroll!(axis in D => {
-        // The edges that end and that begin at the node, each with the smaller Theta of the cells along it.
+        // The edges that end and that begin at the node, each with the cells along it.
         let (ends, begins) = (if axis == 0 { above_left } else { below_right }, above_right);
         let [ends_beside, begins_beside] =
             if axis == 0 { [around[0][0], around[0][1]] } else { [around[0][0], around[1][0]] };
-        let [ends_edge, begins_edge] = [&ends.edge[axis], &begins.edge[axis]];
-        let over = ends_edge.mid() + ends_edge.half() * ends.theta.min(ends_beside.theta);
-        let under = begins_edge.mid() - begins_edge.half() * begins.theta.min(begins_beside.theta);
-        let (falls, rises) = (over.positive(), (-under).positive());
-        squares[axis] = [falls * falls, rises * rises];
+        let over = ends.edge_at(axis, End::Hi, ends_beside);
+        let under = begins.edge_at(axis, End::Lo, begins_beside);
+        steep[axis] = [over.positive(), (-under).positive()];
     });
+    let mut rim = above_right.place.0;
+    unroll!(x in TWO => {
+        rim = rim + (around[0][x].place.0 + around[1][x].place.0);
+    });
+    let plain = !R::any(!rim.same(zero));
     let mut most = R::of(f64::NEG_INFINITY);
     unroll!(y in TWO => {
         unroll!(x in TWO => {
             let cell = around[y][x];
-            let mut square = squares[0][x];
-            // The axes are added first: they may be swapped without changing a bit.
-            let mut across = if x == 0 { cell.v[0].half() } else { -cell.v[0].half() };
-            if D > 1 {
-                square = square + squares[1][y];
-                let half = cell.v[D - 1].half();
-                across = across + if y == 0 { half } else { -half };
-            }
-            let v = cell.v[0].mid() + across;
-            let loss = v * (square.sqrt() - one);
-            most = R::select(cell.inside, most.max(loss), most);
+            let slope = if D > 1 { length(steep[0][x], steep[1][y]) } else { steep[0][x] };
+            let end = |place: usize| if place == 0 { End::Hi } else { End::Lo };
+            let loss = cell.v_at_corner([end(x), end(y)]) * (slope - one);
+            let larger = most.max(loss);
+            most = if plain { larger } else { R::select(cell.place.inside(), larger, most) };
         });
     });
-    R::select(above_right.free, most, zero)
+    if plain { most } else { R::select(above_right.place.free(), most, zero) }
 }
 
 /// v_t of a cell: sum over axes of (H_hi - H_lo)/h + f + S, S the mean of G at the cell's nodes (eqs. 8, 44).
@@ -403,7 +466,7 @@ where
     type State = Pile<R>;
     type Ground = Ground<D, R>;
     type Prime = ();
-    type Edges = Edges<D, R, <Varies<LIMITED> as Kind>::Profile<R>>;
+    type Edges = Edges<D, R, <Varies<LIMITED> as Kind>::Spread<D, R>>;
     type Flux = R;
     type Corner = R;
     const DRIFTS: bool = true;
@@ -424,7 +487,7 @@ where
             Slopes::Minmod => R::of(1.0),
             Slopes::Adaptive { exponent } => self.theta(exponent, window),
         };
-        linear(window, &constant, R::select(constant.inside, theta, R::of(1.0)))
+        linear(window, &constant, R::select(constant.place.inside(), theta, R::of(1.0)))
     }
     #[inline(always)]
     fn flux(&self, axis: usize, left: &Self::Edges, right: &Self::Edges) -> R {
@@ -510,12 +573,12 @@ where
     }
     /// |grad(u + b)| in the cell: 1 is the steepest slope.
     fn margin(&self, window: &impl Window<D, R, Pile<R>, Ground<D, R>>) -> R {
-        let edges: Edges<D, R, Level<R>> = constant(window, [0; D]);
+        let edges: Edges<D, R, ()> = constant(window, [0; D]);
         let mut square = R::zero();
         unroll!(axis in D => {
-            square = square + edges.slope[axis].mid() * edges.slope[axis].mid();
+            square = square + edges.slope[axis] * edges.slope[axis];
         });
-        R::select(edges.inside, square.sqrt(), R::zero())
+        R::select(edges.place.inside(), square.sqrt(), R::zero())
     }
     /// Thickness of the pile; in place of a speed the rolling layer, which is what moves.
     #[inline(always)]
