@@ -4,7 +4,7 @@ use crate::grid::Layout;
 use crate::scheme::Parts;
 
 /// One padded array per number of a cell value.
-#[derive(Clone, Debug)]
+#[derive(Debug)]
 pub struct Field {
     /// The arrays, each [`Layout::len`] long.
     pub parts: Vec<Vec<f64>>,
@@ -13,7 +13,7 @@ pub struct Field {
 impl Field {
     /// Zeros for values of type `P`.
     pub fn zeros<P: Parts<f64>>(layout: &Layout) -> Field {
-        Field { parts: vec![vec![0.0; layout.len()]; P::COUNT] }
+        Field { parts: (0..P::COUNT).map(|_| zeros(layout.len())).collect() }
     }
     /// The value at `place`.
     #[inline(always)]
@@ -25,6 +25,34 @@ impl Field {
     pub fn set<P: Parts<f64>>(&mut self, place: usize, value: P) {
         value.scatter(|k, part| self.parts[k][place] = part);
     }
+}
+
+impl Clone for Field {
+    fn clone(&self) -> Self {
+        let copy = |part: &Vec<f64>| {
+            let mut numbers = zeros(part.len());
+            numbers.copy_from_slice(part);
+            numbers
+        };
+        Field { parts: self.parts.iter().map(copy).collect() }
+    }
+}
+
+/// An array of zeros, on large pages where the system has them: a strip goes from row to row, and rows far from each other
+/// lie on as many small pages as there are rows and arrays.
+fn zeros(len: usize) -> Vec<f64> {
+    let numbers = vec![0.0; len];
+    #[cfg(target_os = "linux")]
+    {
+        const PAGE: usize = 4096;
+        let (start, bytes) = (numbers.as_ptr() as usize, len * size_of::<f64>());
+        let first = start.next_multiple_of(PAGE);
+        // SAFETY: an advice on pages that are wholly ours; refused, it changes nothing.
+        unsafe {
+            libc::madvise(first as *mut _, (start + bytes).saturating_sub(first), libc::MADV_HUGEPAGE);
+        }
+    }
+    numbers
 }
 
 /// Most numbers that a cell value has.

@@ -10,7 +10,7 @@ use fearless_simd::x86::{Avx2, Avx512};
 use fearless_simd::{Level, Select, Simd, SimdBase, SimdFloat, SimdMask};
 use pair::Pair;
 use std::fmt::{Debug, Formatter, Result};
-use std::ops::{Add, BitAnd, BitOr, Div, Mul, Neg, Not, Range, Sub};
+use std::ops::{Add, BitAnd, BitOr, Div, Mul, Neg, Not, Sub};
 
 /// Most numbers side by side.
 pub(crate) const MOST_LANES: usize = 16;
@@ -73,8 +73,8 @@ pub(crate) trait Wide: Real {
     fn first(self) -> f64;
     /// Holds in place `k`?
     fn holds(mask: Self::Mask, k: usize) -> bool;
-    /// Holds in the places of `range`.
-    fn within(range: Range<usize>) -> Self::Mask;
+    /// Holds in the places of the bits that are set, the first the lowest.
+    fn from_bits(bits: u64) -> Self::Mask;
     /// Holds in every place?
     fn all(mask: Self::Mask) -> bool;
     /// The places that hold, a bit each, the first the lowest.
@@ -102,8 +102,8 @@ impl Wide for f64 {
         mask
     }
     #[inline(always)]
-    fn within(range: Range<usize>) -> bool {
-        range.contains(&0)
+    fn from_bits(bits: u64) -> bool {
+        bits & 1 == 1
     }
     #[inline(always)]
     fn all(mask: bool) -> bool {
@@ -365,9 +365,7 @@ impl<S: Simd> Wide for Lanes<S> {
         mask.0.test(k)
     }
     #[inline(always)]
-    fn within(range: Range<usize>) -> Where<S> {
-        let up_to = |k: usize| !(!0_u64 << k.min(63));
-        let bits = up_to(range.end) & !up_to(range.start);
+    fn from_bits(bits: u64) -> Where<S> {
         Where(S::mask64s::from_bitmask(Self::proof(), bits & ((1 << Self::WIDTH) - 1)))
     }
     #[inline(always)]

@@ -71,8 +71,11 @@ pub(super) struct Scratch {
     pub below: Row<MOST_FLUX>,
     /// At the lower left corners of a row, and of the row above.
     pub corners: [Row<MOST_CORNER>; 2],
-    /// The new states of a row.
+    /// The new states of a row, and which cells of each vector have one, a bit each.
     pub fresh: Row<MOST_PARTS>,
+    pub live: [u16; STRIP],
+    /// Which cells of each vector are those of the strip.
+    pub ours: [u16; STRIP],
 }
 
 impl Scratch {

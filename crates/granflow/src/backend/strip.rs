@@ -151,6 +151,10 @@ impl<'a, const D: usize, L: Wide, T: Scheme<D, L>> Strip<'a, D, L, T> {
         let (Some(lowest), Some(highest)) = (tiles.clone().next(), tiles.clone().last()) else { return };
         let columns = [lowest.columns[0], highest.columns[1]];
         let (first, end) = (lowest.rows[0] as isize, highest.rows[1] as isize);
+        for m in Self::vectors(columns) {
+            let ours = ((1_u128 << (columns[1] - columns[0])) - 1) << 1;
+            scratch.ours[m / L::WIDTH] = (ours >> m) as u16;
+        }
         let leak = tiles.clone().any(|tile| !tile.leaks.is_empty());
         for tally in &mut *tallies {
             tally.out = Tally::NONE.out;
@@ -283,7 +287,7 @@ impl<'a, const D: usize, L: Wide, T: Scheme<D, L>> Strip<'a, D, L, T> {
         scratch: &mut Scratch,
         count: &mut Count,
     ) {
-        let Scratch { edges, across, below, corners, fresh, .. } = scratch;
+        let Scratch { edges, across, below, corners, fresh, live, ours, .. } = scratch;
         let above = &edges[(number - first) as usize % 2];
         let row = if D > 1 { &edges[(number - first + 1) as usize % 2] } else { above };
         let high = &corners[(number - first) as usize % 2];
@@ -302,18 +306,24 @@ impl<'a, const D: usize, L: Wide, T: Scheme<D, L>> Strip<'a, D, L, T> {
                     below.put(m, up);
                 }
                 if updates {
-                    let live = Self::ours(columns, m);
-                    let corners = [[low.get(at), low.get(at + 1)], [high.get(at), high.get(at + 1)]];
-                    let vector = Vector { column: m, place: place + m, live };
+                    let number = m / L::WIDTH;
                     if m > 0 {
-                        self.watch(columns, m - L::WIDTH, place, fresh, count);
+                        self.watch(m - L::WIDTH, place, fresh, live[number - 1], count);
                     }
-                    fresh.put(m, self.update(count, vector, &edges, &faces, &corners));
+                    let cell = self.cell(place + m);
+                    let ours = L::from_bits(u64::from(ours[number])) & !self.scheme.outside(&cell.ground);
+                    live[number] = L::bits(ours) as u16;
+                    if L::any(ours) {
+                        let corners = [[low.get(at), low.get(at + 1)], [high.get(at), high.get(at + 1)]];
+                        let vector = Vector { column: m, place: place + m, live: ours };
+                        fresh.put(m, self.update(count, vector, &edges, &faces, &corners));
+                    }
                 }
             }
         }
         if updates {
-            self.watch(columns, Self::end(columns) - L::WIDTH, place, fresh, count);
+            let m = Self::end(columns) - L::WIDTH;
+            self.watch(m, place, fresh, live[m / L::WIDTH], count);
         }
     }
 
@@ -332,10 +342,6 @@ impl<'a, const D: usize, L: Wide, T: Scheme<D, L>> Strip<'a, D, L, T> {
     ) -> T::State {
         let zero = L::zero();
         let here = self.cell(place);
-        let live = live & !self.scheme.outside(&here.ground);
-        if !L::any(live) {
-            return here.state;
-        }
         let mut new = self.scheme.update(&Around { strip: self, place }, edges, faces, corners, self.dt);
         let mut old = here.state;
         if self.keep > 0.0 {
@@ -380,26 +386,20 @@ impl<'a, const D: usize, L: Wide, T: Scheme<D, L>> Strip<'a, D, L, T> {
 
     /// Take the new states of a vector into account: one vector behind, while the next one's roots and divisions are under way.
     #[inline(always)]
-    fn watch(&self, columns: [usize; 2], m: usize, start: usize, fresh: &Row<MOST_PARTS>, count: &mut Count) {
-        if !self.last {
+    fn watch(&self, m: usize, start: usize, fresh: &Row<MOST_PARTS>, live: u16, count: &mut Count) {
+        if !self.last || live == 0 {
             return;
         }
         let place = start + m;
         // SAFETY: the vector has been put; the ground is that of the same cells.
         let cell = Cell { state: unsafe { fresh.get(m as isize) }, ground: self.ground(place) };
-        let live = Self::ours(columns, m) & !self.scheme.outside(&cell.ground);
+        let live = L::from_bits(u64::from(live));
         let watch = self.scheme.watch(&cell);
         count.watch::<L>(m, live, self.scheme.rate(&cell, &self.spacing), &watch);
         if let Some(maps) = self.maps {
             // SAFETY: these are cells of ours.
             unsafe { self.mark(maps, place, live, &watch) };
         }
-    }
-
-    /// Which of the cells from `m` on are those of the strip.
-    #[inline(always)]
-    fn ours(columns: [usize; 2], m: usize) -> L::Mask {
-        L::within(1_usize.saturating_sub(m)..(columns[1] - columns[0] + 1).saturating_sub(m))
     }
 
     /// Bring the maps of peaks and times up to date.

@@ -162,20 +162,22 @@ impl Count {
 
     /// The tally of the tile in some columns, without what left it; they are empty afterwards.
     pub(crate) fn finish(&mut self, columns: Range<usize>) -> Tally {
-        let (mut tally, mut square) = (Tally::NONE, 0.0_f64);
-        for k in columns.clone() {
-            tally.rate = tally.rate.max(self.rate.0[k]);
-            square = square.max(self.square.0[k]);
-            tally.energy += self.energy.0[k];
-            tally.volume += self.volume.0[k];
-            tally.film += self.film.0[k];
-            tally.wet += self.wet.0[k] as usize;
-            tally.moving += self.moving.0[k] as usize;
-            for (most, change) in tally.change.iter_mut().zip(&self.change) {
-                *most = most.max(change.0[k]);
-            }
-        }
-        tally.speed = square.sqrt();
+        let sum = |quantity: &Columns| quantity.0[columns.clone()].iter().sum::<f64>();
+        // None is less than 0 or no number.
+        let most = |quantity: &Columns| {
+            quantity.0[columns.clone()].iter().fold(0.0, |most, &value| if most < value { value } else { most })
+        };
+        let mut tally = Tally {
+            rate: most(&self.rate),
+            speed: most(&self.square).sqrt(),
+            energy: sum(&self.energy),
+            volume: sum(&self.volume),
+            film: sum(&self.film),
+            wet: sum(&self.wet) as usize,
+            moving: sum(&self.moving) as usize,
+            change: self.change.each_ref().map(most),
+            ..Tally::NONE
+        };
         let bits = ((1_u128 << columns.len()) - 1) << columns.start;
         (tally.quiet, tally.finite) = (self.stirs & bits == 0, self.infinite & bits == 0);
         let Count { rate, square, change: [a, b, c], energy, volume, film, wet, moving, .. } = self;

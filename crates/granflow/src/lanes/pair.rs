@@ -2,7 +2,7 @@
 
 use super::Wide;
 use crate::real::Real;
-use std::ops::{Add, BitAnd, BitOr, Div, Mul, Neg, Not, Range, Sub};
+use std::ops::{Add, BitAnd, BitOr, Div, Mul, Neg, Not, Sub};
 
 /// Two of the same, the second behind the first.
 #[derive(Clone, Copy, Debug)]
@@ -125,9 +125,8 @@ impl<L: Wide> Wide for Pair<L> {
         if k < L::WIDTH { L::holds(mask.0, k) } else { L::holds(mask.1, k - L::WIDTH) }
     }
     #[inline(always)]
-    fn within(Range { start, end }: Range<usize>) -> Self::Mask {
-        let behind = |k: usize| k.saturating_sub(L::WIDTH);
-        Pair(L::within(start..end), L::within(behind(start)..behind(end)))
+    fn from_bits(bits: u64) -> Self::Mask {
+        Pair(L::from_bits(bits), L::from_bits(bits >> L::WIDTH))
     }
     #[inline(always)]
     fn all(mask: Self::Mask) -> bool {
