@@ -133,10 +133,7 @@ pub trait Real:
         let far = (right - (s + s)) - ((rest + rest) - Self::of(6.123_233_995_736_766e-17));
         let far = Self::select(negative, -far, far);
         let near = one - z * Self::polynomial(K, z);
-        [
-            Self::select(steep, far, (s * z).mul_add(p, s)),
-            Self::select(steep, (one - square).sqrt(), near),
-        ]
+        [Self::select(steep, far, (s * z).mul_add(p, s)), Self::select(steep, (one - square).sqrt(), near)]
     }
 
     /// p_0 z^11 + p_1 z^10 + ... + p_11, in pairs of pairs (Estrin): a third of the way from the first to the last
@@ -153,11 +150,8 @@ pub trait Real:
             Self::of(p[8]).mul_add(z, Self::of(p[9])),
             Self::of(p[10]).mul_add(z, Self::of(p[11])),
         ];
-        let [high, middle, low] = [
-            pair[0].mul_add(z2, pair[1]),
-            pair[2].mul_add(z2, pair[3]),
-            pair[4].mul_add(z2, pair[5]),
-        ];
+        let [high, middle, low] =
+            [pair[0].mul_add(z2, pair[1]), pair[2].mul_add(z2, pair[3]), pair[4].mul_add(z2, pair[5])];
         high.mul_add(z4, middle).mul_add(z4, low)
     }
 }

@@ -165,7 +165,9 @@ impl Count {
         let sum = |quantity: &Columns| quantity.0[columns.clone()].iter().sum::<f64>();
         // None is less than 0 or no number.
         let most = |quantity: &Columns| {
-            quantity.0[columns.clone()].iter().fold(0.0, |most, &value| if most < value { value } else { most })
+            quantity.0[columns.clone()]
+                .iter()
+                .fold(0.0, |most, &value| if most < value { value } else { most })
         };
         let mut tally = Tally {
             rate: most(&self.rate),

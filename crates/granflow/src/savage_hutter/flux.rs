@@ -3,7 +3,7 @@
 //! M(h, xi - u) = (2/pi) h/c sqrt(1 - ((xi - u)/c)^2)_+, c = sqrt(2 beta h) (report eq. 12). What crosses a face
 //! to the right is carried by xi >= 0, to the left by xi < 0.
 
-use crate::real::Real;
+use crate::real::{Real, each};
 use crate::scheme::parts;
 use std::f64::consts::{FRAC_2_PI, FRAC_PI_4, PI};
 
@@ -60,13 +60,33 @@ pub struct Density<R> {
 parts!([R: Real] Density<R> { u: R, c: R, a: R } masks {});
 
 impl<R: Real> Density<R> {
-    /// Of depth `h`, velocity `u`, pressure coefficient `beta`.
+    /// Of depth `h` and momentum `q` along the axis, pressure coefficient `beta`: u = q/h and a by one division,
+    /// 1/(h c). A depth so small that h c is no number has no velocity.
     #[inline(always)]
-    pub fn new(h: R, u: R, beta: R) -> Self {
-        let one = R::of(1.0);
+    pub fn new(h: R, q: R, beta: R) -> Self {
+        let (zero, one) = (R::zero(), R::of(1.0));
         let c = ((beta + beta) * h).sqrt();
-        let a = (-u * (one / R::select(c.le(R::zero()), one, c))).max(-one).min(one);
-        Density { u, c, a }
+        let volume = h * c;
+        let dry = volume.le(zero);
+        let per = R::select(dry, zero, one / R::select(dry, one, volume));
+        let slowness = q * per;
+        Density { u: slowness * c, c, a: (-slowness).max(-one).min(one) }
+    }
+
+    /// Of mean velocity `u`, where nothing else is asked.
+    #[inline(always)]
+    pub fn mean(u: R) -> Self {
+        Density { u, c: R::zero(), a: R::zero() }
+    }
+
+    /// At the two ends of a cell, depths `h`, velocities `u`.
+    #[inline(always)]
+    pub fn ends(h: [R; 2], u: [R; 2], beta: R) -> [Self; 2] {
+        let (zero, one) = (R::zero(), R::of(1.0));
+        let c: [R; 2] = each!(end => ((beta + beta) * h[end]).sqrt());
+        let wide: [R; 2] = each!(end => R::select(c[end].le(zero), one, c[end]));
+        let per = one / (wide[0] * wide[1]);
+        each!(end => Density { u: u[end], c: c[end], a: (-u[end] * (wide[1 - end] * per)).max(-one).min(one) })
     }
 
     /// The two halves (xi < 0, xi >= 0) under the depth `h`.
@@ -93,16 +113,13 @@ impl<R: Real> Density<R> {
     }
 }
 
-/// The two halves (xi < 0, xi >= 0) of the density of depth `h`, velocity `u`, pressure coefficient `beta`:
-/// [`Density::halves`].
-#[inline(always)]
-pub fn halves<R: Real>(h: R, u: R, beta: R) -> [Half<R>; 2] {
-    Density::new(h, u, beta).halves(h)
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    fn halves(h: f64, u: f64, beta: f64) -> [Half<f64>; 2] {
+        Density::new(h, h * u, beta).halves(h)
+    }
 
     fn by_quadrature(h: f64, u: f64, beta: f64, right: bool) -> (f64, f64) {
         // xi = u + c sin t removes the root's end points; midpoint rule on the half, cut at xi = 0.
@@ -128,7 +145,7 @@ mod tests {
         for (h, u, beta) in
             [(0.7, 0.3, 0.4), (1.3, -0.9, 0.4), (0.2, 2.0, 0.4), (2.3, 0.0, 0.5), (1.0, -3.0, 0.1)]
         {
-            let [left, right] = halves::<f64>(h, u, beta);
+            let [left, right] = halves(h, u, beta);
             for (half, is_right) in [(left, false), (right, true)] {
                 let (mass, momentum) = by_quadrature(h, u, beta, is_right);
                 assert!((half.mass - mass).abs() < 1e-8, "{h} {u} {beta}");
@@ -136,7 +153,7 @@ mod tests {
             }
         }
         // The erratum of I_3: the integral is 0.153, the printed form gave 0.055.
-        assert!((halves::<f64>(0.7, 0.3, 0.4)[1].momentum(0.3) - 0.153).abs() < 5e-4);
+        assert!((halves(0.7, 0.3, 0.4)[1].momentum(0.3) - 0.153).abs() < 5e-4);
     }
 
     #[test]

@@ -4,7 +4,7 @@
 //! two dimensions on a plane by applying the fluxes along each axis, the (1, 2, 1)/4 depth per axis and static
 //! friction as the projection onto a disc.
 
-use super::flux::{Density, Half, halves};
+use super::flux::{Density, Half};
 use super::friction::{Coulomb, Friction};
 use super::ground::{Bed, Chute, Towards};
 use super::{Flow, normal};
@@ -119,7 +119,9 @@ impl Kinetic {
         let (out, back) = match depth {
             FaceDepth::Own => (left.halves[axis][1], right.halves[axis][0]),
             FaceDepth::Mean => {
-                (halves(mean, left.u[axis], left.beta)[1], halves(mean, right.u[axis], right.beta)[0])
+                let out = Density::new(mean, mean * left.u[axis], left.beta);
+                let back = Density::new(mean, mean * right.u[axis], right.beta);
+                (out.halves(mean)[1], back.halves(mean)[0])
             }
         };
         let mut q: [R; D] = each!(k => out.mass * left.u[k] + back.mass * right.u[k]);
@@ -189,8 +191,7 @@ impl<const D: usize, R: Real> Scheme<D, R> for Kinetic {
 
     #[inline(always)]
     fn prime(&self, Cell { state, ground }: &Cell<Flow<D, R>, Chute<D, R>>) -> [Density<R>; D] {
-        let u = state.velocity();
-        each!(axis => Density::new(state.h, u[axis], ground.beta))
+        each!(axis => Density::new(state.h, state.q[axis], ground.beta))
     }
 
     #[inline(always)]
@@ -241,17 +242,13 @@ impl<const D: usize, R: Real> Scheme<D, R> for Kinetic {
                 still | (zero.lt(most) & (size * size).lt(square * (most * most)))
             }
         };
-        let moved =
-            Flow { h: moving_h, q: each!(k => q[k] - moving.q[k] + dt * g[k] * moving_h) };
+        let moved = Flow { h: moving_h, q: each!(k => q[k] - moving.q[k] + dt * g[k] * moving_h) };
         if !R::any(rests) {
             return moved;
         }
 
-        let resting = if self.resting == self.moving {
-            moving
-        } else {
-            divergence(&self.resting_faces(&near), lambda)
-        };
+        let resting =
+            if self.resting == self.moving { moving } else { divergence(&self.resting_faces(&near), lambda) };
         let resting_h = normal(h - resting.h);
         // g~: the static force per mass, tilt plus the excess cut to the disc of radius R
         let by_neighbours = Self::excess(&near);
