@@ -95,11 +95,6 @@ impl<'a, T> Sheet<'a, T> {
 }
 
 impl Sheet<'_> {
-    /// Where `place` lies.
-    #[inline(always)]
-    pub(crate) fn at(&self, place: usize) -> *const f64 {
-        self.start.wrapping_add(place)
-    }
     /// What stands from `place` on where `live` holds, `else` 0.
     ///
     /// # Safety

@@ -1,6 +1,8 @@
 //! Several cells side by side: the same formulas on SIMD lanes, with the same bits.
 
 mod pair;
+#[cfg(test)]
+mod tests;
 
 use crate::real::Real;
 #[cfg(target_arch = "aarch64")]

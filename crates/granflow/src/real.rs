@@ -121,7 +121,7 @@ pub trait Real:
         }
         let right = Self::of(std::f64::consts::FRAC_PI_2);
         let negative = self.lt(Self::zero());
-        if !Self::any(square.lt(one)) {
+        if !Self::any(!square.same(one)) {
             return [Self::select(negative, -right, right), Self::zero()];
         }
         let size = self.abs();

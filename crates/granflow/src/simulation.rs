@@ -485,7 +485,10 @@ impl<const D: usize, S: Scheme<D, f64>> Simulation<D, S> {
                 let tally = &mut self.tallies[number as usize];
                 let quiet = found.quiet && (stage == 0 || tally.quiet);
                 *tally = Tally { quiet, ..*found };
-                for (sum, part) in out.iter_mut().zip(found.out) {
+            }
+            // In the order of the tiles, whatever runs they were computed in.
+            for tally in &self.tallies {
+                for (sum, part) in out.iter_mut().zip(tally.out) {
                     *sum += (1.0 - keep) * part;
                 }
             }
@@ -525,6 +528,9 @@ impl<const D: usize, S: Scheme<D, f64>> Simulation<D, S> {
                 let stirs = self.stirs(x, y, across, up);
                 self.waiting[y * across + x] = stirs;
                 stirring += usize::from(stirs);
+                if !stirs {
+                    self.tallies[y * across + x].out = Tally::NONE.out;
+                }
             }
         }
         let wide = across.min((STRIP - 2) / tile_size(D)[0]);

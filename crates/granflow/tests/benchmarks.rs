@@ -491,7 +491,7 @@ fn a_slab_on_terrain_stops_at_the_exact_time() {
             alone(|| {
                 while run.time() < 1.2 * exact.stopping_time() {
                     steps(&mut run, 1);
-                    let v = run.watch([60, 60]).speed;
+                    let v = run.watch([60, 60]).square.sqrt();
                     let right = exact.velocity(run.time());
                     assert!(
                         (v - right).abs() < 1e-10 || ends_early(order, v, right, lost_per_step),

@@ -96,16 +96,16 @@ impl Consistency {
     ) -> Flow<D, f64> {
         let spacing = Spacing::new([1.0; D]);
         let around = |state| Alike { here: Cell { state, ground }, spacing };
-        let (wet, dry) = (scheme.reconstruct(&around(state)), scheme.reconstruct(&around(Flow::still(0.0))));
+        let edges = |state| scheme.reconstruct(&around(state), &scheme.prime(&Cell { state, ground }));
+        let (wet, dry) = (edges(state), edges(Flow::still(0.0)));
         let corners = [[scheme.corner([[&wet; 2]; 2]); 2]; 2];
         let idle: [Faces<S::Flux>; D] =
             std::array::from_fn(|k| Faces { lo: scheme.flux(k, &dry, &dry), hi: scheme.flux(k, &dry, &dry) });
         let mut faces = idle;
         faces[axis].hi = scheme.flux(axis, &wet, &wet);
         let dt = 0.125;
-        let here = Cell { state, ground };
-        let without = scheme.update(&here, &wet, &idle, &corners, &spacing, dt);
-        let with = scheme.update(&here, &wet, &faces, &corners, &spacing, dt);
+        let without = scheme.update(&around(state), &wet, &idle, &corners, dt);
+        let with = scheme.update(&around(state), &wet, &faces, &corners, dt);
         Flow { h: (without.h - with.h) / dt, q: std::array::from_fn(|k| (without.q[k] - with.q[k]) / dt) }
     }
 

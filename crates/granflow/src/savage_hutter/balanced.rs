@@ -519,9 +519,10 @@ where
             });
         });
         let all_open = !R::any(!gates.same(zero));
+        let mut idle = zero.lt(zero);
         if !all_open {
             // What holds itself or is bare, and is not touched, stays: leave out the work.
-            let mut idle = !edges.gate.is_open() & gone.same(zero);
+            idle = !edges.gate.is_open() & gone.same(zero);
             unroll!(k in D => {
                 idle = idle & lost[k].same(zero) & q[k].same(zero);
             });
@@ -599,7 +600,10 @@ where
                 slowed[k] = R::select(far, moved[k] - share * old[k], slowed[k]);
             });
         }
-        Flow { h: new, q: slowed }
+        if all_open {
+            return Flow { h: new, q: slowed };
+        }
+        Flow { h: R::select(idle, h, new), q: each!(k => R::select(idle, q[k], slowed[k])) }
     }
 
     fn mirror(&self, axis: usize, state: &Flow<D, R>) -> Flow<D, R> {

@@ -1,0 +1,180 @@
+//! Every kind of lanes that this machine has gives what one number at a time gives, to the bit.
+
+use super::*;
+use std::array::from_fn;
+
+/// Something to be tried on every kind of lanes.
+trait Trial {
+    fn on<L: Wide>(&self, inside: impl Inside);
+}
+
+impl<T: Trial> Job for &T {
+    type Output = ();
+    fn run<L: Wide>(self, inside: impl Inside) {
+        self.on::<L>(inside);
+    }
+}
+
+/// On the kinds that runs use, and on vectors and pairs of them that they may come to use.
+fn everywhere(trial: &impl Trial) {
+    for instructions in [Instructions::Scalar, Instructions::Narrow, Instructions::Widest] {
+        instructions.run(trial);
+    }
+    trial.on::<Pair<f64>>(Anywhere);
+    #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
+    {
+        if let Some(simd) = Level::new().as_avx2() {
+            trial.on::<Lanes<Avx2>>(With(simd));
+        }
+        if let Level::Avx512(simd) = Level::new() {
+            trial.on::<Pair<Lanes<Avx512>>>(With(simd));
+        }
+    }
+    #[cfg(target_arch = "aarch64")]
+    if let Level::Neon(simd) = Level::new() {
+        trial.on::<Lanes<Neon>>(With(simd));
+    }
+}
+
+/// Random bits (Marsaglia's xorshift).
+struct Dice(u64);
+
+impl Dice {
+    fn bits(&mut self) -> u64 {
+        self.0 ^= self.0 << 13;
+        self.0 ^= self.0 >> 7;
+        self.0 ^= self.0 << 17;
+        self.0
+    }
+    /// Of the numbers that the doubles are made of: odd ones, sines, sines close to an end, any size at all.
+    fn number(&mut self, mood: u64) -> f64 {
+        const ODD: [f64; 16] = [
+            0.0,
+            -0.0,
+            1.0,
+            -1.0,
+            0.5,
+            -0.5,
+            f64::NAN,
+            f64::INFINITY,
+            f64::NEG_INFINITY,
+            f64::MAX,
+            f64::MIN,
+            f64::MIN_POSITIVE,
+            5e-324,
+            -1e-310,
+            1.0 - f64::EPSILON / 2.0,
+            1.0 + f64::EPSILON,
+        ];
+        let sine = (self.bits() >> 11) as f64 / (1_u64 << 52) as f64 - 1.0;
+        match mood {
+            0 => ODD[self.bits() as usize % ODD.len()],
+            1 => sine,
+            2 => 0.5 * sine,
+            3 => (1.0 - sine * sine * 1e-9).copysign(sine),
+            4 => 1.0_f64.copysign(sine),
+            _ => f64::from_bits(self.bits()),
+        }
+    }
+    /// A vector's worth: of one mood, or of two.
+    fn numbers(&mut self) -> [f64; MOST_LANES] {
+        let moods: [u64; 2] = from_fn(|_| self.bits() % 6);
+        let mixed = self.bits().is_multiple_of(2);
+        from_fn(|_| {
+            let mood = moods[usize::from(mixed) * (self.bits() % 2) as usize];
+            self.number(mood)
+        })
+    }
+}
+
+struct Formulas;
+
+impl Formulas {
+    /// What is tried; in the first `CHOSEN` one of the numbers is chosen.
+    #[inline(always)]
+    fn of<R: Real>([x, y, z]: [R; 3]) -> [R; 8] {
+        let [arc, root] = x.arc();
+        [x.min(y), x.max(y), x.mul_add(y, z), arc, root, x.sqrt(), x / y, x.ln()]
+    }
+    const CHOSEN: usize = 2;
+}
+
+impl Trial for Formulas {
+    fn on<L: Wide>(&self, inside: impl Inside) {
+        let mut dice = Dice(0x9e37_79b9_7f4a_7c15);
+        for _ in 0..20_000 {
+            let numbers: [[f64; MOST_LANES]; 3] = from_fn(|_| dice.numbers());
+            let mut ours = [[0.0; MOST_LANES]; 8];
+            inside.call(
+                #[inline(always)]
+                || {
+                    // SAFETY: no vector is longer.
+                    let vectors = from_fn(|k| unsafe { L::load(numbers[k].as_ptr()) });
+                    for (place, value) in ours.iter_mut().zip(Self::of::<L>(vectors)) {
+                        // SAFETY: as above.
+                        unsafe { value.store(place.as_mut_ptr()) };
+                    }
+                },
+            );
+            for lane in 0..L::WIDTH {
+                let operands: [f64; 3] = from_fn(|k| numbers[k][lane]);
+                for (formula, expected) in Self::of(operands).into_iter().enumerate() {
+                    let found = ours[formula][lane];
+                    // Which not-a-number an operation gives is nobody's promise; one that was chosen is as it was.
+                    let none = formula >= Self::CHOSEN && expected.is_nan() && found.is_nan();
+                    assert!(
+                        none || found.to_bits() == expected.to_bits(),
+                        "formula {formula} of {operands:?} in lane {lane} of {}: {found:e}, not {expected:e}",
+                        L::WIDTH
+                    );
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn formulas_on_lanes_are_those_of_one_number() {
+    everywhere(&Formulas);
+}
+
+struct Masks;
+
+impl Trial for Masks {
+    fn on<L: Wide>(&self, inside: impl Inside) {
+        let numbers: [f64; MOST_LANES] = from_fn(|k| 1.0 + k as f64);
+        for start in 0..=L::WIDTH + 1 {
+            for end in start..=L::WIDTH + 1 {
+                let (mut read, mut written) = ([9.0; MOST_LANES], [-1.0; MOST_LANES]);
+                let (bits, all, any) = inside.call(
+                    #[inline(always)]
+                    || {
+                        let mask = L::within(start..end);
+                        for k in 0..L::WIDTH {
+                            assert_eq!(L::holds(mask, k), (start..end).contains(&k));
+                        }
+                        // SAFETY: no vector is longer.
+                        unsafe {
+                            let some = L::load_where(mask, numbers.as_ptr());
+                            some.store(read.as_mut_ptr());
+                            L::load(numbers.as_ptr()).store_where(mask, written.as_mut_ptr());
+                        }
+                        (L::bits(mask), L::all(mask), L::any(mask))
+                    },
+                );
+                let within = |k: usize| (start..end.min(L::WIDTH)).contains(&k);
+                assert_eq!(bits, (0..L::WIDTH).map(|k| u64::from(within(k)) << k).sum());
+                assert_eq!((all, any), (bits == (1 << L::WIDTH) - 1, bits > 0));
+                for k in 0..L::WIDTH {
+                    assert_eq!(read[k], if within(k) { numbers[k] } else { 0.0 });
+                }
+                assert_eq!(written, from_fn(|k| if within(k) { numbers[k] } else { -1.0 }));
+            }
+        }
+    }
+}
+
+#[test]
+fn masks_are_the_lanes_of_their_range() {
+    everywhere(&Masks);
+}
