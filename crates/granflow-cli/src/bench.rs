@@ -6,7 +6,7 @@ use std::time::Duration;
 
 use granflow::case::nearest;
 use granflow::simulation::Instructions;
-use granflow::speed::{SETUPS, Setup, SpeedError, Triad, spells};
+use granflow::speed::{Extent, SETUPS, Setup, SpeedError, Triad, spells};
 
 use crate::failure::{Failure, print};
 
@@ -37,6 +37,9 @@ pub struct Options {
     /// Number of threads; may be repeated (default: 1, and all cores)
     #[arg(long, value_name = "N")]
     threads: Vec<NonZeroUsize>,
+    /// Share of the grid that is wet; the rest is dry and sleeps
+    #[arg(long, value_name = "SHARE", default_value_t = 1.0)]
+    wet: f64,
     /// The vectors to compute with: widest, narrow (no wider than AVX2), scalar
     #[arg(long, value_name = "NAME", default_value = "widest")]
     instructions: String,
@@ -62,7 +65,7 @@ struct Plan {
 /// Measures and prints a table, row by row.
 pub fn bench(options: &Options) -> Result<(), Failure> {
     let plan = plan(options)?;
-    let mut report = Report::new(options.json.clone(), plan.instructions, options.quick);
+    let mut report = Report::new(options.json.clone(), plan.instructions, options.wet, options.quick);
     report.save()?;
     if let Some(command) = &options.beside {
         report.yardsticks = yardsticks(command, When::Before)?;
@@ -76,10 +79,9 @@ pub fn bench(options: &Options) -> Result<(), Failure> {
     let (repeats, seconds) = if options.quick { (3, 0.02) } else { (5, 0.3) };
     for setup in plan.setups {
         for cells in sizes(setup, &plan.cells) {
-            let mut load = setup.begin(cells);
+            let mut load = setup.begin(Extent { cells, wet: options.wet });
             load.use_instructions(plan.instructions);
             for &threads in &plan.threads {
-                load.restart();
                 let spells = spells(load.as_mut(), threads, repeats, Duration::from_secs_f64(seconds));
                 let row = Row::new(setup, cells, threads, load.as_ref(), &spells?);
                 print(&report.add(row))?;
@@ -124,6 +126,10 @@ fn plan(options: &Options) -> Result<Plan, Failure> {
             return Err(Failure::usage(message, "allowed: widest, narrow, scalar"));
         }
     };
+    if !(options.wet > 0.0 && options.wet <= 1.0) {
+        let message = format!("a share of {} cannot be wet", options.wet);
+        return Err(Failure::usage(message, "allowed: above 0, up to 1"));
+    }
     let all = std::thread::available_parallelism().map_or(1, NonZeroUsize::get);
     let mut threads: Vec<usize> = options.threads.iter().map(|threads| threads.get()).collect();
     if threads.is_empty() {

@@ -87,12 +87,14 @@ fn what_ran_beside_is_compared_with() {
 fn what_is_wrong_is_said_before_work_starts() {
     let folder = tempfile::tempdir().unwrap();
     std::fs::write(folder.path().join("file"), "").unwrap();
-    let wrong: [(&[&str], i32, &[&str]); 9] = [
+    let wrong: [(&[&str], i32, &[&str]); 11] = [
         (&["--scheme", "balancd"], 2, &["`balancd`", "did you mean `balanced`?", "adaptive"]),
         (&["--threads", "0"], 2, &["--threads"]),
         (&["--threads", "2000"], 2, &["2000 threads", "cores"]),
         (&["--cells", "4"], 2, &["4 cells", "8 and more"]),
         (&["--cells", "10000000"], 2, &["GB are free", "fewer --cells"]),
+        (&["--wet", "0"], 2, &["share of 0", "up to 1"]),
+        (&["--wet", "nan"], 2, &["share of NaN"]),
         (&["--instructions", "wide"], 2, &["`wide`", "widest, narrow, scalar"]),
         (&["--json", "file/speed.json"], 4, &["file/speed.json", "cannot write"]),
         (&["--beside", "exit 3"], 2, &["`exit 3` failed"]),
@@ -107,6 +109,23 @@ fn what_is_wrong_is_said_before_work_starts() {
         // A row takes longer than that.
         assert!(output.stdout.is_empty() && clock.elapsed().as_secs_f64() < 1.5, "{arguments:?}");
     }
+}
+
+#[test]
+fn dry_cells_cost_little() {
+    let folder = tempfile::tempdir().unwrap();
+    let mcups = |wet: &str| {
+        let sizes = ["--cells", "400", "--threads", "1", "--scheme", "balanced", "--json", "speed.json"];
+        let output = bench(folder.path(), &[&["--quick", "--wet", wet], &sizes[..]].concat());
+        assert!(output.status.success(), "{}", text(&output.stderr));
+        let found = std::fs::read(folder.path().join("speed.json")).unwrap();
+        let found: Value = serde_json::from_slice(&found).unwrap();
+        assert_eq!(found["rows"][0]["share_of_triad"].is_null(), wet != "1");
+        number(&found["rows"][0]["mcups"])
+    };
+    // A tenth of the cells, and the tiles around them: five times as fast would do on a quiet machine.
+    let (all, tenth) = (mcups("1"), mcups("0.1"));
+    assert!(tenth > 2.0 * all, "{all} of all wet, {tenth} with a tenth wet");
 }
 
 #[test]

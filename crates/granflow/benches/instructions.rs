@@ -3,7 +3,7 @@
 //! `.ci/instructions` counts, and fails where a number differs by more than 2 % from `instructions.txt`, up or down;
 //! `.ci/instructions --record` writes that file. valgrind knows no AVX-512: what is counted are the lanes of AVX2.
 
-use granflow::speed::{SETUPS, Setup};
+use granflow::speed::{Extent, SETUPS, Setup};
 use std::path::Path;
 use std::process::{Command, ExitCode};
 
@@ -41,7 +41,7 @@ fn setup(name: &str) -> Result<&'static Setup, Trouble> {
 fn take(setup: &Setup, steps: u64) -> Result<(), Trouble> {
     let pool = rayon::ThreadPoolBuilder::new().num_threads(1).build()?;
     Ok(pool.install(|| {
-        let mut load = setup.begin(CELLS);
+        let mut load = setup.begin(Extent { cells: CELLS, wet: 1.0 });
         (0..steps).try_for_each(|_| load.step())
     })?)
 }

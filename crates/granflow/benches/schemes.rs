@@ -2,7 +2,7 @@
 //! schemes` prints a table; medians of rounds that are taken in turn, so that other work on the machine falls on all
 //! alike. On grids that fit the second-level cache: formulas are compared here, the memory by `granflow bench`.
 
-use granflow::speed::{Load, SETUPS, median};
+use granflow::speed::{Extent, Load, SETUPS, median};
 use std::time::Instant;
 
 /// Cells along each axis.
@@ -11,7 +11,7 @@ const ROUNDS: usize = 9;
 
 /// Nanoseconds for each cell of a step.
 fn cost(load: &mut dyn Load) -> f64 {
-    load.restart();
+    load.restart().expect("a sound step");
     let (clock, steps) = (Instant::now(), load.steps_left());
     for _ in 0..steps {
         load.step().expect("a sound step");
@@ -23,7 +23,8 @@ fn main() {
     let pool = rayon::ThreadPoolBuilder::new().num_threads(1).build().expect("a thread");
     pool.install(|| {
         let setups = || SETUPS.iter().filter(|setup| setup.dimensions == 2);
-        let mut loads: Vec<_> = setups().map(|setup| setup.begin(CELLS)).collect();
+        let mut loads: Vec<_> =
+            setups().map(|setup| setup.begin(Extent { cells: CELLS, wet: 1.0 })).collect();
         let rounds: Vec<Vec<f64>> =
             (0..ROUNDS).map(|_| loads.iter_mut().map(|load| cost(load.as_mut())).collect()).collect();
         println!("{CELLS} x {CELLS} cells, one thread\n{:18} {:>8}  of balanced", "scheme", "ns/cell");

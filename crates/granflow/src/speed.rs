@@ -7,7 +7,7 @@ mod setups;
 mod triad;
 
 pub use measure::{SpeedError, Spell, median, spells};
-pub use setups::{SETUPS, Setup};
+pub use setups::{Extent, SETUPS, Setup};
 pub use triad::Triad;
 
 use crate::field::Field;
@@ -18,7 +18,7 @@ use crate::simulation::{Failure, Instructions, Simulation, Traffic};
 pub trait Load: Send {
     /// Cells that are computed in a step.
     fn cells(&self) -> usize;
-    /// Compute every cell.
+    /// Compute every cell, or those that are awake where a part is dry.
     ///
     /// # Errors
     /// [`Failure`] where the state is beyond what the scheme takes.
@@ -26,8 +26,11 @@ pub trait Load: Send {
     /// Steps until it has moved on so far that cells come to rest, and it should begin anew.
     fn steps_left(&self) -> usize;
     /// Begin anew.
-    fn restart(&mut self);
-    /// What a step asks of the memory.
+    ///
+    /// # Errors
+    /// [`Failure`] where the state is beyond what the scheme takes.
+    fn restart(&mut self) -> Result<(), Failure>;
+    /// What a step of every cell asks of the memory.
     fn traffic(&self) -> Traffic;
     /// Compute with these instructions.
     fn use_instructions(&mut self, instructions: Instructions);
@@ -39,12 +42,14 @@ struct Begun<const D: usize, S: Scheme<D, f64>> {
     clock: Vec<f64>,
     start: Field,
     left: usize,
+    /// No cell may sleep.
+    all: bool,
 }
 
 impl<const D: usize, S: Scheme<D, f64>> Begun<D, S> {
-    fn new(run: Simulation<D, S>) -> Self {
+    fn new(run: Simulation<D, S>, all: bool) -> Self {
         let (clock, start) = (run.clock(), run.arrays().clone());
-        let mut begun = Begun { run, clock, start, left: 0 };
+        let mut begun = Begun { run, clock, start, left: 0, all };
         begun.left = begun.whole();
         begun
     }
@@ -59,16 +64,23 @@ impl<const D: usize, S: Scheme<D, f64>> Load for Begun<D, S> {
         self.run.grid().count()
     }
     fn step(&mut self) -> Result<(), Failure> {
-        self.run.wake_all();
+        if self.all {
+            self.run.wake_all();
+        }
         self.left = self.left.saturating_sub(1);
         self.run.advance(f64::INFINITY).map(|_| ())
     }
     fn steps_left(&self) -> usize {
         self.left
     }
-    fn restart(&mut self) {
+    fn restart(&mut self) -> Result<(), Failure> {
         self.run.restore(&self.clock, self.start.clone());
+        if !self.all {
+            // The first step finds out what may sleep.
+            self.step()?;
+        }
         self.left = self.whole();
+        Ok(())
     }
     fn traffic(&self) -> Traffic {
         self.run.traffic()
@@ -82,40 +94,63 @@ impl<const D: usize, S: Scheme<D, f64>> Load for Begun<D, S> {
 mod tests {
     use super::*;
 
-    fn named(name: &str) -> &'static Setup {
-        SETUPS.iter().find(|setup| setup.name == name).expect("a setup")
+    fn whole(cells: usize) -> Extent {
+        Extent { cells, wet: 1.0 }
+    }
+
+    #[test]
+    fn every_setup_runs_until_its_restart_and_again() {
+        for setup in SETUPS {
+            for wet in [1.0, 0.3] {
+                let mut load = setup.begin(Extent { cells: 40, wet });
+                assert_eq!(load.cells(), 40_usize.pow(setup.dimensions as u32), "{}", setup.name);
+                for _ in 0..3 {
+                    while load.steps_left() > 0 {
+                        load.step().unwrap_or_else(|failure| panic!("{}: {failure}", setup.name));
+                    }
+                    load.restart().unwrap_or_else(|failure| panic!("{}: {failure}", setup.name));
+                }
+            }
+        }
     }
 
     #[test]
     fn every_cell_moves_until_the_restart_and_the_restart_is_the_start() {
-        for setup in SETUPS {
-            let mut load = setup.begin(40);
-            assert_eq!(load.cells(), 40_usize.pow(setup.dimensions as u32), "{}", setup.name);
-            for _ in 0..3 {
-                while load.steps_left() > 0 {
-                    load.step().unwrap_or_else(|failure| panic!("{}: {failure}", setup.name));
-                }
-                load.restart();
+        let mut load = setups::on_plane::<2>(false, whole(40));
+        let mut go = || {
+            while load.steps_left() > 0 {
+                load.step().unwrap();
             }
-        }
-        let mut run = setups::on_plane::<2>(false, 40);
-        while run.steps_left() > 0 {
-            run.step().unwrap();
-        }
-        let (moving, wet) = run.run.counts();
-        assert_eq!([moving, wet], [1600; 2]);
-        let moved = run.run.arrays().parts.clone();
-        run.restart();
-        assert_eq!(run.run.arrays().parts, run.start.parts);
-        while run.steps_left() > 0 {
-            run.step().unwrap();
-        }
-        assert_eq!(run.run.arrays().parts, moved);
+            let (counts, moved) = (load.run.counts(), load.run.arrays().parts.clone());
+            load.restart().unwrap();
+            assert_eq!(load.run.arrays().parts, load.start.parts);
+            (counts, moved)
+        };
+        let first = go();
+        assert_eq!(first.0, (1600, 1600), "cells that move, cells that are wet");
+        assert!(first == go());
+    }
+
+    #[test]
+    fn what_is_dry_sleeps() {
+        let mut load = setups::on_plane::<2>(false, Extent { cells: 400, wet: 0.25 });
+        load.restart().unwrap();
+        assert_eq!(
+            load.run.counts().1,
+            200 * 200 + 4 * 200,
+            "the square, and a row of cells along its sides"
+        );
+        let before = load.run.updates();
+        load.step().unwrap();
+        let share = (load.run.updates() - before) as f64 / 160_000.0;
+        // Of the square, and of the tiles around it, 30 x 8 cells each.
+        assert!((0.25..0.4).contains(&share), "{share}");
     }
 
     #[test]
     fn the_memory_model_counts_the_numbers_of_the_types() {
-        let traffic = |name: &str| named(name).begin(200).traffic();
+        let named = |name: &str| SETUPS.iter().find(|setup| setup.name == name).expect("a setup");
+        let traffic = |name: &str| named(name).begin(whole(200)).traffic();
         // Three numbers in two dimensions, two in one, two of a pile; a plane is one ground.
         assert_eq!(traffic("balanced"), Traffic { read: 24.0, written: 24.0, allocated: 24.0 });
         assert_eq!(traffic("balanced_1d"), Traffic { read: 16.0, written: 16.0, allocated: 16.0 });

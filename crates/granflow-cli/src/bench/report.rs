@@ -61,6 +61,8 @@ impl Row {
 pub struct Report {
     json: Option<PathBuf>,
     instructions: Instructions,
+    /// Share of the grid that is wet.
+    wet: f64,
     quick: bool,
     /// Bytes of an array of the triad, and its bytes a second by number of threads.
     pub array: usize,
@@ -74,9 +76,9 @@ pub struct Report {
 
 impl Report {
     /// Nothing yet; `json` is the file to write.
-    pub fn new(json: Option<PathBuf>, instructions: Instructions, quick: bool) -> Report {
+    pub fn new(json: Option<PathBuf>, instructions: Instructions, wet: f64, quick: bool) -> Report {
         let (triad, yardsticks, rows) = (Vec::new(), Vec::new(), Vec::new());
-        Report { json, instructions, quick, array: 0, triad, yardsticks, rows, complete: false }
+        Report { json, instructions, wet, quick, array: 0, triad, yardsticks, rows, complete: false }
     }
 
     /// What stands above the table.
@@ -85,6 +87,13 @@ impl Report {
         let of = format!("{} bytes a number, arrays of {:.0} MiB", Triad::BYTES, mebibytes(self.array));
         let speeds: Vec<String> = self.triad.iter().map(|(t, b)| format!("{:.1} on {t}", 1e-9 * b)).collect();
         let _ = writeln!(text, "triad: {} threads, GB/s ({of})", speeds.join(", "));
+        if self.wet < 1.0 {
+            let _ = writeln!(
+                text,
+                "wet: {} of the cells, the others sleep; Mcups and ns are of all cells",
+                self.wet
+            );
+        }
         if self.quick {
             text += "a try: repeats too short and arrays too small for numbers to be quoted\n";
         }
@@ -125,8 +134,11 @@ impl Report {
         line.trim_end().to_owned() + "\n"
     }
 
-    /// Share of the bandwidth of the triad on the same threads.
+    /// Share of the bandwidth of the triad on the same threads, if every cell was computed.
     fn share(&self, row: &Row) -> Option<f64> {
+        if self.wet < 1.0 {
+            return None;
+        }
         let (_, bandwidth) = self.triad.iter().find(|(threads, _)| *threads == row.threads)?;
         Some(row.traffic.sum() * 1e6 * row.mcups() / bandwidth)
     }
@@ -221,6 +233,7 @@ impl Report {
             "instructions": self.instructions.found(),
             "cores": std::thread::available_parallelism().map_or(0, std::num::NonZeroUsize::get),
             "quick": self.quick,
+            "wet": self.wet,
             "complete": self.complete,
             "triad": {
                 "bytes_per_number": Triad::BYTES,

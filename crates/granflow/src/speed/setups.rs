@@ -1,4 +1,4 @@
-//! The runs: everything moves, nothing is dry.
+//! The runs: everything moves, nothing is dry unless asked for.
 
 use super::{Begun, Load};
 use crate::grid::Grid;
@@ -23,13 +23,33 @@ pub struct Setup {
     pub about: &'static str,
     /// How many.
     pub dimensions: usize,
-    begin: fn(usize) -> Box<dyn Load>,
+    begin: fn(Extent) -> Box<dyn Load>,
+}
+
+/// How large a run is.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Extent {
+    /// Cells along each axis.
+    pub cells: usize,
+    /// Share of the grid that is wet, a square in the middle; the rest is dry, or stands still, and may sleep.
+    pub wet: f64,
+}
+
+impl Extent {
+    /// Does the cell belong to the wet part?
+    fn is_wet<const D: usize>(&self, index: [usize; D]) -> bool {
+        let half = 0.5 * self.wet.powf(1.0 / D as f64) * self.cells as f64;
+        index.iter().all(|k| (*k as f64 + 0.5 - 0.5 * self.cells as f64).abs() < half)
+    }
+    fn all(&self) -> bool {
+        self.wet >= 1.0
+    }
 }
 
 impl Setup {
-    /// The run on so many cells along each axis.
-    pub fn begin(&self, cells: usize) -> Box<dyn Load> {
-        (self.begin)(cells)
+    /// The run of this extent.
+    pub fn begin(&self, extent: Extent) -> Box<dyn Load> {
+        (self.begin)(extent)
     }
 }
 
@@ -39,61 +59,61 @@ pub const SETUPS: &[Setup] = &[
         name: "balanced",
         about: "first order, an inclined plane",
         dimensions: 2,
-        begin: |n| Box::new(on_plane::<2>(false, n)),
+        begin: |extent| Box::new(on_plane::<2>(false, extent)),
     },
     Setup {
         name: "balanced_terrain",
         about: "first order, a bed of varying slope and curvature",
         dimensions: 2,
-        begin: |n| Box::new(on_terrain(false, n)),
+        begin: |extent| Box::new(on_terrain(false, extent)),
     },
     Setup {
         name: "balanced_2",
         about: "second order, two stages, an inclined plane",
         dimensions: 2,
-        begin: |n| Box::new(on_plane::<2>(true, n)),
+        begin: |extent| Box::new(on_plane::<2>(true, extent)),
     },
     Setup {
         name: "balanced_2_terrain",
         about: "second order, two stages, a bed of varying slope and curvature",
         dimensions: 2,
-        begin: |n| Box::new(on_terrain(true, n)),
+        begin: |extent| Box::new(on_terrain(true, extent)),
     },
     Setup {
         name: "balanced_1d",
         about: "first order, an inclined plane",
         dimensions: 1,
-        begin: |n| Box::new(on_plane::<1>(false, n)),
+        begin: |extent| Box::new(on_plane::<1>(false, extent)),
     },
     Setup {
         name: "verfahren_1",
         about: "as published, an inclined plane",
         dimensions: 2,
-        begin: |n| Box::new(as_published(VERFAHREN_1, n)),
+        begin: |extent| Box::new(as_published(VERFAHREN_1, extent)),
     },
     Setup {
         name: "verfahren_5",
         about: "as published, an inclined plane",
         dimensions: 2,
-        begin: |n| Box::new(as_published(VERFAHREN_5, n)),
+        begin: |extent| Box::new(as_published(VERFAHREN_5, extent)),
     },
     Setup {
         name: "first_order",
         about: "a sandpile, a square table",
         dimensions: 2,
-        begin: |n| Box::new(on_table(FIRST_ORDER, n)),
+        begin: |extent| Box::new(on_table(FIRST_ORDER, extent)),
     },
     Setup {
         name: "second_order",
         about: "a sandpile, two stages, a square table",
         dimensions: 2,
-        begin: |n| Box::new(on_table(SECOND_ORDER, n)),
+        begin: |extent| Box::new(on_table(SECOND_ORDER, extent)),
     },
     Setup {
         name: "adaptive",
         about: "a sandpile, two stages, a square table",
         dimensions: 2,
-        begin: |n| Box::new(on_table(ADAPTIVE, n)),
+        begin: |extent| Box::new(on_table(ADAPTIVE, extent)),
     },
 ];
 
@@ -113,7 +133,11 @@ fn plane<const D: usize>() -> Chute<D, f64> {
 }
 
 /// A cap of 0.2 on a layer of 0.02, which spreads slowly.
-fn cap<const D: usize>(x: [f64; D]) -> Flow<D, f64> {
+fn cap<const D: usize>(sheet: &Grid<D>, extent: Extent, index: [usize; D]) -> Flow<D, f64> {
+    if !extent.is_wet(index) {
+        return Flow::still(0.0);
+    }
+    let x = sheet.centre(index);
     let square: f64 = x.iter().map(|x| x * x).sum();
     let h = 0.02 + 0.2 * (1.0 - square / 0.09).max(0.0);
     Flow { h, q: x.map(|x| h * 0.2 * x) }
@@ -128,31 +152,31 @@ fn balanced<B>(second: bool) -> (Balanced<Coulomb, B>, Stages) {
 
 pub(super) fn on_plane<const D: usize>(
     second: bool,
-    cells: usize,
+    extent: Extent,
 ) -> Begun<D, Balanced<Coulomb, Chute<D, f64>>> {
-    let sheet = grid::<D>(cells, Boundary::Open);
+    let sheet = grid::<D>(extent.cells, Boundary::Open);
     let (scheme, stages) = balanced(second);
-    let start = |index| cap(sheet.centre(index));
-    Begun::new(Simulation::new(scheme, sheet, stages, COURANT, |_| plane(), start))
+    let start = |index| cap(&sheet, extent, index);
+    Begun::new(Simulation::new(scheme, sheet, stages, COURANT, |_| plane(), start), extent.all())
 }
 
-fn as_published(published: Kinetic, cells: usize) -> Begun<2, Kinetic> {
-    let sheet = grid::<2>(cells, Boundary::Open);
+fn as_published(published: Kinetic, extent: Extent) -> Begun<2, Kinetic> {
+    let sheet = grid::<2>(extent.cells, Boundary::Open);
     let scheme = Kinetic { friction: FRICTION, ..published };
-    let start = |index| cap(sheet.centre(index));
-    Begun::new(Simulation::new(scheme, sheet, EULER, COURANT, |_| plane(), start))
+    let start = |index| cap(&sheet, extent, index);
+    Begun::new(Simulation::new(scheme, sheet, EULER, COURANT, |_| plane(), start), extent.all())
 }
 
-fn on_terrain(second: bool, cells: usize) -> Begun<2, Balanced<Coulomb, ground::Terrain<2, f64>>> {
-    let sheet = grid::<2>(cells, Boundary::Nothing);
+fn on_terrain(second: bool, extent: Extent) -> Begun<2, Balanced<Coulomb, ground::Terrain<2, f64>>> {
+    let sheet = grid::<2>(extent.cells, Boundary::Nothing);
     let height = |number: usize| {
         let [x, y] = sheet.centre(sheet.index(number));
         0.3 * x + 0.02 * (9.0 * x).sin() * (7.0 * y).cos()
     };
     let [west, south] = sheet.origin;
     let bed = Raster {
-        columns: cells,
-        rows: cells,
+        columns: extent.cells,
+        rows: extent.cells,
         west,
         south,
         cell: sheet.size[0],
@@ -161,30 +185,31 @@ fn on_terrain(second: bool, cells: usize) -> Begun<2, Balanced<Coulomb, ground::
     };
     let grounds = ground::Terrain::cells(&Terrain::new(bed, Curvature::Length(3.0 * sheet.size[0])), 1.0);
     let (scheme, stages) = balanced(second);
-    let ground = |[i, j]: [usize; 2]| grounds[j * cells + i];
-    Begun::new(Simulation::new(scheme, sheet, stages, COURANT, ground, |index| cap(sheet.centre(index))))
+    let ground = |[i, j]: [usize; 2]| grounds[j * extent.cells + i];
+    let start = |index| cap(&sheet, extent, index);
+    Begun::new(Simulation::new(scheme, sheet, stages, COURANT, ground, start), extent.all())
 }
 
-/// A table half as high as it will be, with sand rolling and poured everywhere; the last column and row are nodes only.
-fn on_table(scheme: HadelerKuttler, cells: usize) -> Begun<2, HadelerKuttler> {
-    let last = cells - 1;
+/// A table half as high as it will be, with sand poured and rolling on it; the last column and row are nodes only.
+fn on_table(scheme: HadelerKuttler, extent: Extent) -> Begun<2, HadelerKuttler> {
+    let last = extent.cells - 1;
+    let one = |yes: bool| if yes { 1.0 } else { 0.0 };
     let ground = |[i, j]: [usize; 2]| {
-        let one = |yes: bool| if yes { 1.0 } else { 0.0 };
-        let inside = one(i < last && j < last);
-        let weight = one(i > 0 && j > 0 && i < last && j < last);
+        let inside = i < last && j < last;
         hadeler_kuttler::Ground {
-            source: [0.25 * inside; 2],
+            source: [0.25 * one(inside && extent.is_wet([i, j])); 2],
             bed: 0.0,
-            inside,
-            weight,
+            inside: one(inside),
+            weight: one(i > 0 && j > 0 && i < last && j < last),
             wall: [0.0; 2],
             hole: 0.0,
         }
     };
     let start = |index: [usize; 2]| {
         let from_edge = index.map(|k| k.min(last - k)).into_iter().min().unwrap_or(0);
-        Pile { u: 0.5 * from_edge as f64 / cells as f64, v: 0.1 * ground(index).inside }
+        let rolls = index.iter().all(|k| *k < last) && extent.is_wet(index);
+        Pile { u: 0.5 * from_edge as f64 / extent.cells as f64, v: 0.1 * one(rolls) }
     };
-    let sheet = grid::<2>(cells, Boundary::Nothing);
-    Begun::new(Simulation::new(scheme, sheet, scheme.stages(), COURANT, ground, start))
+    let sheet = grid::<2>(extent.cells, Boundary::Nothing);
+    Begun::new(Simulation::new(scheme, sheet, scheme.stages(), COURANT, ground, start), extent.all())
 }
