@@ -114,9 +114,7 @@ mod tests {
         }
     }
 
-    #[test]
-    fn every_cell_moves_until_the_restart_and_the_restart_is_the_start() {
-        let mut load = setups::on_plane::<2>(false, whole(40));
+    fn all_move_and_begin_anew<S: Scheme<2, f64>>(mut load: Begun<2, S>) {
         let mut go = || {
             while load.steps_left() > 0 {
                 load.step().unwrap();
@@ -129,6 +127,12 @@ mod tests {
         let first = go();
         assert_eq!(first.0, (1600, 1600), "cells that move, cells that are wet");
         assert!(first == go());
+    }
+
+    #[test]
+    fn every_cell_moves_until_the_restart_and_the_restart_is_the_start() {
+        all_move_and_begin_anew(setups::on_plane::<2>(false, whole(40)));
+        all_move_and_begin_anew(setups::on_terrain(false, whole(40)));
     }
 
     #[test]

@@ -132,7 +132,7 @@ fn plane<const D: usize>() -> Chute<D, f64> {
     Chute { tilt, beta: 0.9, cos: 0.954, curvature: 0.0 }
 }
 
-/// A cap of 0.2 on a layer of 0.02, which spreads slowly.
+/// A cap of 0.2 on a layer of 0.02, which spreads slowly and flows down fast enough for no cell to stop.
 fn cap<const D: usize>(sheet: &Grid<D>, extent: Extent, index: [usize; D]) -> Flow<D, f64> {
     if !extent.is_wet(index) {
         return Flow::still(0.0);
@@ -140,7 +140,9 @@ fn cap<const D: usize>(sheet: &Grid<D>, extent: Extent, index: [usize; D]) -> Fl
     let x = sheet.centre(index);
     let square: f64 = x.iter().map(|x| x * x).sum();
     let h = 0.02 + 0.2 * (1.0 - square / 0.09).max(0.0);
-    Flow { h, q: x.map(|x| h * 0.2 * x) }
+    let mut u = x.map(|x| 0.2 * x);
+    u[0] += 0.15;
+    Flow { h, q: u.map(|u| h * u) }
 }
 
 fn balanced<B>(second: bool) -> (Balanced<Coulomb, B>, Stages) {
@@ -167,7 +169,10 @@ fn as_published(published: Kinetic, extent: Extent) -> Begun<2, Kinetic> {
     Begun::new(Simulation::new(scheme, sheet, EULER, COURANT, |_| plane(), start), extent.all())
 }
 
-fn on_terrain(second: bool, extent: Extent) -> Begun<2, Balanced<Coulomb, ground::Terrain<2, f64>>> {
+pub(super) fn on_terrain(
+    second: bool,
+    extent: Extent,
+) -> Begun<2, Balanced<Coulomb, ground::Terrain<2, f64>>> {
     let sheet = grid::<2>(extent.cells, Boundary::Nothing);
     let height = |number: usize| {
         let [x, y] = sheet.centre(sheet.index(number));
