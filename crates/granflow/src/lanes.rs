@@ -196,6 +196,21 @@ impl Instructions {
             _ => job.run::<f64>(Anywhere),
         }
     }
+
+    /// What they are on this processor.
+    pub fn found(self) -> &'static str {
+        match (self, Level::new()) {
+            #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
+            (Instructions::Widest, Level::Avx512(_)) => "AVX-512, vectors of 8 cells",
+            #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
+            (Instructions::Widest | Instructions::Narrow, level) if level.as_avx2().is_some() => {
+                "AVX2, two vectors of 4 cells"
+            }
+            #[cfg(target_arch = "aarch64")]
+            (Instructions::Widest | Instructions::Narrow, Level::Neon(_)) => "NEON, two vectors of 2 cells",
+            _ => "scalar, one cell at a time",
+        }
+    }
 }
 
 /// As many numbers as a vector of `S` holds.

@@ -48,6 +48,7 @@
 //! | [`raster`], [`terrain`], [`release`] | GeoTIFF and ESRI ASCII, the bed's slope and curvature, what is released |
 //! | [`case`] | the case file, from TOML to numbers, with errors that name line and key |
 //! | [`output`] | the files of a run, one module per format |
+//! | [`speed`] | what a step costs: runs to measure by, and what the memory can do |
 //!
 //! The pages under `docs/` of the repository hold the equations, the schemes, the errata of the papers, the case file
 //! and the output files; `ARCHITECTURE.md` and `CONTRIBUTING.md` say how it is built and how to extend it.
@@ -71,6 +72,7 @@ pub mod savage_hutter;
 pub mod scheme;
 pub mod setup;
 pub mod simulation;
+pub mod speed;
 pub mod terrain;
 pub mod time;
 

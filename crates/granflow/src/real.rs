@@ -1,4 +1,4 @@
-//! The scalar of every formula: `f64` today, SIMD lanes with the same source tomorrow.
+//! The scalar of every formula: one `f64`, or several side by side on SIMD lanes, with the same source and the same bits.
 //!
 //! Decisions on cell values are [`Real::select`], never `if`: a lane cannot branch.
 

@@ -1,5 +1,9 @@
 //! A run in memory: fields, clock, tiles and ledger.
 
+mod traffic;
+
+pub use traffic::Traffic;
+
 use crate::backend::{Count, EXITS, Leak, MOST_PARTS, MOST_TILES, Run, STRIP, Sweep, Tally, Tile, tile_size};
 use crate::boundary;
 use crate::field::Field;

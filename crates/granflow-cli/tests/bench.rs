@@ -1,0 +1,138 @@
+//! `granflow bench` as a user meets it, on grids too small to say anything of the machine.
+
+use serde_json::Value;
+use std::path::Path;
+use std::process::{Command, Output};
+use std::time::Instant;
+
+fn bench(folder: &Path, arguments: &[&str]) -> Output {
+    let mut command = Command::new(env!("CARGO_BIN_EXE_granflow"));
+    command.current_dir(folder).arg("bench").args(arguments).output().expect("the program starts")
+}
+
+fn text(bytes: &[u8]) -> String {
+    String::from_utf8_lossy(bytes).into_owned()
+}
+
+fn number(value: &Value) -> f64 {
+    value.as_f64().unwrap_or_else(|| panic!("{value} is no number"))
+}
+
+#[test]
+fn every_scheme_has_its_row_on_every_number_of_threads() {
+    let folder = tempfile::tempdir().unwrap();
+    let sizes = ["--quick", "--cells", "64", "--threads", "1", "--threads", "2", "--json", "deep/speed.json"];
+    let output = bench(folder.path(), &sizes);
+    let said = text(&output.stdout);
+    assert!(output.status.success(), "{}", text(&output.stderr));
+    let found: Value =
+        serde_json::from_slice(&std::fs::read(folder.path().join("deep/speed.json")).unwrap()).unwrap();
+    assert_eq!([&found["complete"], &found["quick"]], [true; 2]);
+    let rows = found["rows"].as_array().unwrap();
+    assert_eq!(rows.len(), 20);
+    let bandwidth = |threads: &Value| {
+        let all = found["triad"]["measured"].as_array().unwrap();
+        number(&all.iter().find(|one| one["threads"] == *threads).unwrap()["bytes_per_second"])
+    };
+    for row in rows {
+        let (name, mcups) = (row["scheme"].as_str().unwrap(), number(&row["mcups"]));
+        // The table shows what the file holds.
+        let columns: Vec<&str> = said
+            .lines()
+            .map(|line| line.split_whitespace().collect::<Vec<_>>())
+            .find(|words| {
+                let threads = if name == "balanced_1d" { 2 } else { 4 };
+                words.first() == Some(&name)
+                    && words.get(threads) == Some(&row["threads"].to_string().as_str())
+            })
+            .unwrap_or_else(|| panic!("{name} in {said}"));
+        assert!(columns.contains(&format!("{mcups:.1}").as_str()), "{mcups} in {columns:?}");
+        // What is derived follows from what is measured.
+        let repeats: Vec<f64> = row["repeats"].as_array().unwrap().iter().map(number).collect();
+        let below = repeats.iter().filter(|repeat| **repeat < mcups).count();
+        let above = repeats.iter().filter(|repeat| **repeat > mcups).count();
+        assert!(repeats.len() == 3 && repeats.contains(&mcups) && below <= 1 && above <= 1, "{repeats:?}");
+        assert!(mcups > 0.0);
+        let ns = 1e3 * number(&row["threads"]) / mcups;
+        assert!((number(&row["ns_per_cell"]) / ns - 1.0).abs() < 1e-12);
+        let bytes = &row["bytes_per_cell"];
+        let bytes = number(&bytes["read"]) + number(&bytes["written"]) + number(&bytes["allocated"]);
+        let share = bytes * 1e6 * mcups / bandwidth(&row["threads"]);
+        assert!((number(&row["share_of_triad"]) / share - 1.0).abs() < 1e-12);
+    }
+}
+
+#[test]
+fn what_ran_beside_is_compared_with() {
+    let folder = tempfile::tempdir().unwrap();
+    // Another speed the second time, and a line that is none.
+    let command = "echo noise; if [ -e again ]; then echo threads=1 theirs 9x9 Mcups 30; \
+                   else echo threads=1 theirs 9x9 Mcups 10; touch again; fi; echo threads=7 theirs 9x9 Mcups 70";
+    let arguments =
+        ["--quick", "--cells", "64", "--threads", "1", "--scheme", "balanced", "--json", "speed.json"];
+    let output = bench(folder.path(), &[&arguments[..], &["--beside", command]].concat());
+    assert!(output.status.success(), "{}", text(&output.stderr));
+    let found: Value =
+        serde_json::from_slice(&std::fs::read(folder.path().join("speed.json")).unwrap()).unwrap();
+    let row = &found["rows"][0];
+    let ratio = number(&row["mcups"]) / 20.0;
+    assert!((number(&row["ratios"]["theirs 9x9"]) / ratio - 1.0).abs() < 1e-12, "{row}");
+    assert_eq!(found["beside"].as_array().unwrap().len(), 4);
+    let said = text(&output.stdout);
+    let last = said.lines().last().unwrap();
+    assert!(last.starts_with("balanced ") && last.ends_with(&format!("{ratio:.2}")), "{said}");
+}
+
+#[test]
+fn what_is_wrong_is_said_before_work_starts() {
+    let folder = tempfile::tempdir().unwrap();
+    std::fs::write(folder.path().join("file"), "").unwrap();
+    let wrong: [(&[&str], i32, &[&str]); 11] = [
+        (&["--scheme", "balancd"], 2, &["`balancd`", "did you mean `balanced`?", "adaptive"]),
+        (&["--threads", "0"], 2, &["--threads"]),
+        (&["--threads", "2000"], 2, &["2000 threads", "cores"]),
+        (&["--cells", "4"], 2, &["4 cells", "8 and more"]),
+        (&["--cells", "10000000"], 2, &["GB are free", "fewer --cells"]),
+        (&["--wet", "0"], 2, &["share of 0", "up to 1"]),
+        (&["--wet", "nan"], 2, &["share of NaN"]),
+        (&["--instructions", "wide"], 2, &["`wide`", "widest, narrow, scalar"]),
+        (&["--json", "file/speed.json"], 4, &["file/speed.json", "cannot write"]),
+        (&["--beside", "exit 3"], 2, &["`exit 3` failed"]),
+        (&["--beside", "echo nothing"], 2, &["printed no speed", "threads=2 name 2000x2000 Mcups"]),
+    ];
+    for (arguments, status, fragments) in wrong {
+        let clock = Instant::now();
+        let output = bench(folder.path(), arguments);
+        let message = text(&output.stderr);
+        assert_eq!(output.status.code(), Some(status), "{arguments:?}: {message}");
+        assert!(fragments.iter().all(|part| message.contains(part)), "{arguments:?}: {message}");
+        // A row takes longer than that.
+        assert!(output.stdout.is_empty() && clock.elapsed().as_secs_f64() < 1.5, "{arguments:?}");
+    }
+}
+
+#[test]
+fn dry_cells_cost_little() {
+    let folder = tempfile::tempdir().unwrap();
+    let mcups = |wet: &str| {
+        let sizes = ["--cells", "400", "--threads", "1", "--scheme", "balanced", "--json", "speed.json"];
+        let output = bench(folder.path(), &[&["--quick", "--wet", wet], &sizes[..]].concat());
+        assert!(output.status.success(), "{}", text(&output.stderr));
+        let found = std::fs::read(folder.path().join("speed.json")).unwrap();
+        let found: Value = serde_json::from_slice(&found).unwrap();
+        assert_eq!(found["rows"][0]["share_of_triad"].is_null(), wet != "1");
+        number(&found["rows"][0]["mcups"])
+    };
+    // A tenth of the cells, and the tiles around them: five times as fast would do on a quiet machine.
+    let (all, tenth) = (mcups("1"), mcups("0.1"));
+    assert!(tenth > 2.0 * all, "{all} of all wet, {tenth} with a tenth wet");
+}
+
+#[test]
+fn the_instructions_asked_for_are_taken() {
+    let folder = tempfile::tempdir().unwrap();
+    let arguments =
+        ["--quick", "--cells", "64", "--threads", "1", "--scheme", "balanced", "--instructions", "scalar"];
+    let said = text(&bench(folder.path(), &arguments).stdout);
+    assert!(said.starts_with("instructions: scalar"), "{said}");
+}

@@ -1,0 +1,170 @@
+//! What a step costs: runs in which every cell has work, the time that their steps take, and what the memory can do.
+//!
+//! `granflow bench`, `cargo bench` and the counted instructions measure these same runs.
+
+mod measure;
+mod setups;
+mod triad;
+
+pub use measure::{SpeedError, Spell, median, spells};
+pub use setups::{Extent, SETUPS, Setup};
+pub use triad::Triad;
+
+use crate::field::Field;
+use crate::scheme::Scheme;
+use crate::simulation::{Failure, Instructions, Simulation, Traffic};
+
+/// A run to be measured, of whatever scheme.
+pub trait Load: Send {
+    /// Cells that are computed in a step.
+    fn cells(&self) -> usize;
+    /// Compute every cell, or those that are awake where a part is dry.
+    ///
+    /// # Errors
+    /// [`Failure`] where the state is beyond what the scheme takes.
+    fn step(&mut self) -> Result<(), Failure>;
+    /// Steps until it has moved on so far that cells come to rest, and it should begin anew.
+    fn steps_left(&self) -> usize;
+    /// Begin anew.
+    ///
+    /// # Errors
+    /// [`Failure`] where the state is beyond what the scheme takes.
+    fn restart(&mut self) -> Result<(), Failure>;
+    /// What a step of every cell asks of the memory.
+    fn traffic(&self) -> Traffic;
+    /// Compute with these instructions.
+    fn use_instructions(&mut self, instructions: Instructions);
+}
+
+/// A run and how it began.
+struct Begun<const D: usize, S: Scheme<D, f64>> {
+    run: Simulation<D, S>,
+    clock: Vec<f64>,
+    start: Field,
+    left: usize,
+    /// No cell may sleep.
+    all: bool,
+}
+
+impl<const D: usize, S: Scheme<D, f64>> Begun<D, S> {
+    fn new(run: Simulation<D, S>, all: bool) -> Self {
+        let (clock, start) = (run.clock(), run.arrays().clone());
+        let mut begun = Begun { run, clock, start, left: 0, all };
+        begun.left = begun.whole();
+        begun
+    }
+    /// Steps in which a signal passes a small part of the grid.
+    fn whole(&self) -> usize {
+        (self.run.grid().cells[0] / 8).max(1)
+    }
+}
+
+impl<const D: usize, S: Scheme<D, f64>> Load for Begun<D, S> {
+    fn cells(&self) -> usize {
+        self.run.grid().count()
+    }
+    fn step(&mut self) -> Result<(), Failure> {
+        if self.all {
+            self.run.wake_all();
+        }
+        self.left = self.left.saturating_sub(1);
+        self.run.advance(f64::INFINITY).map(|_| ())
+    }
+    fn steps_left(&self) -> usize {
+        self.left
+    }
+    fn restart(&mut self) -> Result<(), Failure> {
+        self.run.restore(&self.clock, self.start.clone());
+        if !self.all {
+            // The first step finds out what may sleep.
+            self.step()?;
+        }
+        self.left = self.whole();
+        Ok(())
+    }
+    fn traffic(&self) -> Traffic {
+        self.run.traffic()
+    }
+    fn use_instructions(&mut self, instructions: Instructions) {
+        self.run.use_instructions(instructions);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn whole(cells: usize) -> Extent {
+        Extent { cells, wet: 1.0 }
+    }
+
+    #[test]
+    fn every_setup_runs_until_its_restart_and_again() {
+        for setup in SETUPS {
+            for wet in [1.0, 0.3] {
+                let mut load = setup.begin(Extent { cells: 40, wet });
+                assert_eq!(load.cells(), 40_usize.pow(setup.dimensions as u32), "{}", setup.name);
+                for _ in 0..3 {
+                    while load.steps_left() > 0 {
+                        load.step().unwrap_or_else(|failure| panic!("{}: {failure}", setup.name));
+                    }
+                    load.restart().unwrap_or_else(|failure| panic!("{}: {failure}", setup.name));
+                }
+            }
+        }
+    }
+
+    fn all_move_and_begin_anew<S: Scheme<2, f64>>(mut load: Begun<2, S>) {
+        let mut go = || {
+            while load.steps_left() > 0 {
+                load.step().unwrap();
+            }
+            let (counts, moved) = (load.run.counts(), load.run.arrays().parts.clone());
+            load.restart().unwrap();
+            assert_eq!(load.run.arrays().parts, load.start.parts);
+            (counts, moved)
+        };
+        let first = go();
+        assert_eq!(first.0, (1600, 1600), "cells that move, cells that are wet");
+        assert!(first == go());
+    }
+
+    #[test]
+    fn every_cell_moves_until_the_restart_and_the_restart_is_the_start() {
+        all_move_and_begin_anew(setups::on_plane::<2>(false, whole(40)));
+        all_move_and_begin_anew(setups::on_terrain(false, whole(40)));
+    }
+
+    #[test]
+    fn what_is_dry_sleeps() {
+        let mut load = setups::on_plane::<2>(false, Extent { cells: 400, wet: 0.25 });
+        load.restart().unwrap();
+        assert_eq!(
+            load.run.counts().1,
+            200 * 200 + 4 * 200,
+            "the square, and a row of cells along its sides"
+        );
+        let before = load.run.updates();
+        load.step().unwrap();
+        let share = (load.run.updates() - before) as f64 / 160_000.0;
+        // Of the square, and of the tiles around it, 30 x 8 cells each.
+        assert!((0.25..0.4).contains(&share), "{share}");
+    }
+
+    #[test]
+    fn the_memory_model_counts_the_numbers_of_the_types() {
+        let named = |name: &str| SETUPS.iter().find(|setup| setup.name == name).expect("a setup");
+        let traffic = |name: &str| named(name).begin(whole(200)).traffic();
+        // Three numbers in two dimensions, two in one, two of a pile; a plane is one ground.
+        assert_eq!(traffic("balanced"), Traffic { read: 24.0, written: 24.0, allocated: 24.0 });
+        assert_eq!(traffic("balanced_1d"), Traffic { read: 16.0, written: 16.0, allocated: 16.0 });
+        // The second stage reads the state at the start of the step instead of allocating.
+        assert_eq!(traffic("balanced_2"), Traffic { read: 72.0, written: 48.0, allocated: 24.0 });
+        // Ten numbers of a terrain in every cell.
+        assert_eq!(traffic("balanced_terrain").read, 24.0 + 80.0);
+        // Only the tiles at the edges of the table see another ground than that of the middle.
+        let pile = traffic("first_order");
+        assert!((16.0..48.0).contains(&pile.read), "{pile:?}");
+        assert_eq!([pile.written, pile.allocated], [16.0; 2]);
+    }
+}
