@@ -4,7 +4,7 @@ use crate::field::Field;
 use crate::grid::{GHOSTS, Grid, Layout};
 use crate::scheme::{Boundary, Parts};
 
-/// Fill the ghost cells of `field`; `mirror(axis, value)` is the image across a wall.
+/// Fill the ghost cells of `field`, which was made of zeros; `mirror(axis, value)` is the image across a wall.
 pub fn fill<const D: usize, P: Parts<f64>>(
     field: &mut Field,
     grid: &Grid<D>,
@@ -20,6 +20,9 @@ pub fn fill<const D: usize, P: Parts<f64>>(
         let place = |i: isize, j: isize| if axis == 0 { layout.place(i, j) } else { layout.place(j, i) };
         for ghost in 0..ghosts {
             for (side, target) in [(0, -1 - ghost), (1, last + 1 + ghost)] {
+                if grid.boundary[axis][side] == Boundary::Nothing {
+                    continue; // 0, as the field was made
+                }
                 let edge = if side == 0 { 0 } else { last };
                 let inward = if side == 0 { edge + ghost } else { edge - ghost };
                 let source = match grid.boundary[axis][side] {
@@ -31,8 +34,7 @@ pub fn fill<const D: usize, P: Parts<f64>>(
                     let value: P = field.get(place(source, j));
                     let value = match grid.boundary[axis][side] {
                         Boundary::Wall => mirror(axis, value),
-                        Boundary::Nothing => P::gather(|_| 0.0),
-                        Boundary::Open | Boundary::Periodic => value,
+                        Boundary::Open | Boundary::Periodic | Boundary::Nothing => value,
                     };
                     field.set(place(target, j), value);
                 }

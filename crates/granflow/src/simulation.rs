@@ -97,6 +97,10 @@ pub struct Simulation<const D: usize, S: Scheme<D, f64>> {
     leaks: Vec<Leak>,
     instructions: Instructions,
     tallies: Vec<Tally>,
+    /// The largest of their rates.
+    rate: f64,
+    /// Tiles with ways out.
+    leaky: Vec<u32>,
     quiet: Vec<bool>,
     awake: Vec<u32>,
     runs: Vec<Run>,
@@ -157,6 +161,8 @@ impl<const D: usize, S: Scheme<D, f64>> Simulation<D, S> {
             spacing: Spacing::new(grid.size),
             next: now.clone(),
             tallies: vec![Tally::NONE; tiles.len()],
+            rate: 0.0,
+            leaky: Vec::new(),
             quiet: vec![false; tiles.len()],
             awake: Vec::with_capacity(tiles.len()),
             runs: Vec::with_capacity(tiles.len()),
@@ -200,6 +206,7 @@ impl<const D: usize, S: Scheme<D, f64>> Simulation<D, S> {
     fn look_at_grounds(&mut self) {
         self.supply = self.supplied();
         self.leaks.clear();
+        self.leaky.clear();
         for number in 0..self.tiles.len() {
             let from = self.leaks.len();
             let Tile { columns, rows, .. } = self.tiles[number];
@@ -211,6 +218,9 @@ impl<const D: usize, S: Scheme<D, f64>> Simulation<D, S> {
             let even = self.is_even(columns, rows);
             let tile = &mut self.tiles[number];
             (tile.leaks, tile.even) = (from..self.leaks.len(), even);
+            if !tile.leaks.is_empty() {
+                self.leaky.push(number as u32);
+            }
         }
     }
 
@@ -424,11 +434,12 @@ impl<const D: usize, S: Scheme<D, f64>> Simulation<D, S> {
             // Nothing is known of the change before the next step.
             *tally = Tally { change: [f64::INFINITY; MOST_PARTS], ..count.finish(0..width) };
         }
+        self.find_rate();
     }
 
     /// max over cells of [`Scheme::rate`]: the Courant number of a step dt is dt times this.
     pub fn rate(&self) -> f64 {
-        self.tallies.iter().fold(0.0, |most, tally| tally.rate.max(most))
+        self.rate
     }
     /// The step that the Courant condition or the case asks for; infinite where nothing could move.
     pub fn wanted_step(&self) -> f64 {
@@ -437,7 +448,7 @@ impl<const D: usize, S: Scheme<D, f64>> Simulation<D, S> {
             StepSize::Courant(courant) => {
                 // At courant = 1 a fast thin cell empties to the last bit: rounding must not take more than it holds.
                 const LESS: f64 = 1.0 - 1e-14;
-                LESS * courant / self.tallies.iter().fold(0.0, |most: f64, tally| tally.rate.max(most))
+                LESS * courant / self.rate
             }
         }
     }
@@ -491,8 +502,8 @@ impl<const D: usize, S: Scheme<D, f64>> Simulation<D, S> {
                 *tally = Tally { quiet, ..*found };
             }
             // In the order of the tiles, whatever runs they were computed in.
-            for tally in &self.tallies {
-                for (sum, part) in out.iter_mut().zip(tally.out) {
+            for &number in &self.leaky {
+                for (sum, part) in out.iter_mut().zip(self.tallies[number as usize].out) {
                     *sum += (1.0 - keep) * part;
                 }
             }
@@ -512,7 +523,12 @@ impl<const D: usize, S: Scheme<D, f64>> Simulation<D, S> {
             finite &= self.tallies[number as usize].finite;
             self.quiet[number as usize] = self.tallies[number as usize].quiet;
         }
+        self.find_rate();
         if finite { Ok(dt) } else { Err(Failure::NotFinite { step: self.step, time: self.time }) }
+    }
+
+    fn find_rate(&mut self) {
+        self.rate = self.tallies.iter().fold(0.0, |most, tally| if most < tally.rate { tally.rate } else { most });
     }
 
     /// Let every tile be computed in the next step; changes no result, only what it costs.
