@@ -528,7 +528,8 @@ impl<const D: usize, S: Scheme<D, f64>> Simulation<D, S> {
     }
 
     fn find_rate(&mut self) {
-        self.rate = self.tallies.iter().fold(0.0, |most, tally| if most < tally.rate { tally.rate } else { most });
+        self.rate =
+            self.tallies.iter().fold(0.0, |most, tally| if most < tally.rate { tally.rate } else { most });
     }
 
     /// Let every tile be computed in the next step; changes no result, only what it costs.

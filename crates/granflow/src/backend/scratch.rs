@@ -81,7 +81,13 @@ pub(super) struct Scratch {
 impl Scratch {
     #[inline(always)]
     pub(super) fn new() -> Self {
-        // SAFETY: rows of numbers that need not be initialized. (A constant would be copied here.)
-        unsafe { MaybeUninit::<Scratch>::uninit().assume_init() }
+        let mut scratch = MaybeUninit::<Scratch>::uninit();
+        let start = scratch.as_mut_ptr();
+        // SAFETY: the rows are numbers that need not be initialized, the rest is. (A constant would be copied here.)
+        unsafe {
+            (&raw mut (*start).live).write([0; STRIP]);
+            (&raw mut (*start).ours).write([0; STRIP]);
+            scratch.assume_init()
+        }
     }
 }

@@ -142,39 +142,39 @@ struct Masks;
 
 impl Trial for Masks {
     fn on<L: Wide>(&self, inside: impl Inside) {
+        let mut dice = Dice(0x2545_f491_4f6c_dd1d);
         let numbers: [f64; MOST_LANES] = from_fn(|k| 1.0 + k as f64);
-        for start in 0..=L::WIDTH + 1 {
-            for end in start..=L::WIDTH + 1 {
-                let (mut read, mut written) = ([9.0; MOST_LANES], [-1.0; MOST_LANES]);
-                let (bits, all, any) = inside.call(
-                    #[inline(always)]
-                    || {
-                        let mask = L::within(start..end);
-                        for k in 0..L::WIDTH {
-                            assert_eq!(L::holds(mask, k), (start..end).contains(&k));
-                        }
-                        // SAFETY: no vector is longer.
-                        unsafe {
-                            let some = L::load_where(mask, numbers.as_ptr());
-                            some.store(read.as_mut_ptr());
-                            L::load(numbers.as_ptr()).store_where(mask, written.as_mut_ptr());
-                        }
-                        (L::bits(mask), L::all(mask), L::any(mask))
-                    },
-                );
-                let within = |k: usize| (start..end.min(L::WIDTH)).contains(&k);
-                assert_eq!(bits, (0..L::WIDTH).map(|k| u64::from(within(k)) << k).sum());
-                assert_eq!((all, any), (bits == (1 << L::WIDTH) - 1, bits > 0));
-                for k in 0..L::WIDTH {
-                    assert_eq!(read[k], if within(k) { numbers[k] } else { 0.0 });
-                }
-                assert_eq!(written, from_fn(|k| if within(k) { numbers[k] } else { -1.0 }));
+        let whole = (1_u64 << L::WIDTH) - 1;
+        let random: [u64; 200] = from_fn(|_| dice.bits());
+        for wanted in [0, 1, whole >> 1, whole & !1, whole, u64::MAX].into_iter().chain(random) {
+            let (mut read, mut written) = ([9.0; MOST_LANES], [-1.0; MOST_LANES]);
+            let (bits, all, any) = inside.call(
+                #[inline(always)]
+                || {
+                    let mask = L::from_bits(wanted);
+                    for k in 0..L::WIDTH {
+                        assert_eq!(L::holds(mask, k), wanted >> k & 1 == 1);
+                    }
+                    // SAFETY: no vector is longer.
+                    unsafe {
+                        L::load_where(mask, numbers.as_ptr()).store(read.as_mut_ptr());
+                        L::load(numbers.as_ptr()).store_where(mask, written.as_mut_ptr());
+                    }
+                    (L::bits(mask), L::all(mask), L::any(mask))
+                },
+            );
+            assert_eq!((bits, all, any), (wanted & whole, bits == whole, bits > 0));
+            for k in 0..MOST_LANES {
+                let holds = bits >> k & 1 == 1;
+                assert_eq!(written[k], if holds { numbers[k] } else { -1.0 });
+                let expected = if holds { numbers[k] } else { 0.0 };
+                assert_eq!(read[k], if k < L::WIDTH { expected } else { 9.0 });
             }
         }
     }
 }
 
 #[test]
-fn masks_are_the_lanes_of_their_range() {
+fn masks_hold_in_the_lanes_of_their_bits() {
     everywhere(&Masks);
 }

@@ -61,16 +61,16 @@ parts!([R: Real] Density<R> { u: R, c: R, a: R } masks {});
 
 impl<R: Real> Density<R> {
     /// Of depth `h` and momentum `q` along the axis, pressure coefficient `beta`: u = q/h and a by one division,
-    /// 1/(h c). A depth so small that h c is no number has no velocity.
+    /// 1/(h c), 1/h without pressure. A depth so small that h c is no normal number has no velocity.
     #[inline(always)]
     pub fn new(h: R, q: R, beta: R) -> Self {
         let (zero, one) = (R::zero(), R::of(1.0));
         let c = ((beta + beta) * h).sqrt();
-        let volume = h * c;
-        let dry = volume.le(zero);
-        let per = R::select(dry, zero, one / R::select(dry, one, volume));
-        let slowness = q * per;
-        Density { u: slowness * c, c, a: (-slowness).max(-one).min(one) }
+        let wide = R::select(c.same(zero), one, c);
+        let volume = h * wide;
+        let wet = R::of(f64::MIN_POSITIVE).le(volume);
+        let share = q * R::select(wet, one / R::select(wet, volume, one), zero);
+        Density { u: R::select(wet, share * wide, zero), c, a: (-share).max(-one).min(one) }
     }
 
     /// Of mean velocity `u`, where nothing else is asked.
