@@ -188,11 +188,6 @@ impl Instructions {
             (Instructions::Widest | Instructions::Narrow, Level::Neon(simd)) => {
                 job.run::<Pair<Lanes<Neon>>>(With(simd))
             }
-            // One cell at a time, with the one instruction for x y + z where the processor has it.
-            #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
-            (_, level) if level.as_avx2().is_some() => {
-                job.run::<f64>(With(level.as_avx2().expect("just seen")))
-            }
             _ => job.run::<f64>(Anywhere),
         }
     }

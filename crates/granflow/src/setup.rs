@@ -11,7 +11,7 @@ use crate::raster::{Crs, Raster, RasterError};
 use crate::release::{self, ReleaseError};
 use crate::savage_hutter::Flow;
 use crate::savage_hutter::balanced::Balanced;
-use crate::savage_hutter::friction::{Cohesion, Coulomb, Friction, SamosAt, Voellmy};
+use crate::savage_hutter::friction::{Cohesion, Coulomb, Law, SamosAt, Voellmy};
 use crate::savage_hutter::ground::{self, Bed, Chute};
 use crate::savage_hutter::kinetic::{
     Kinetic, VERFAHREN_1, VERFAHREN_2, VERFAHREN_3, VERFAHREN_4, VERFAHREN_5,
@@ -218,22 +218,15 @@ impl Scene {
         let material = case.material();
         let density = material.density();
         let mu = material.friction.mu();
-        match &material.friction {
-            case::Friction::Coulomb(_) => self.with_friction(case, Coulomb { mu }, work),
-            case::Friction::Voellmy(law) => {
-                self.with_friction(case, Voellmy { mu, xi: law.xi, gravity: case.gravity() }, work)
-            }
-            case::Friction::Cohesion(law) => {
-                self.with_friction(case, Cohesion { mu, bond: law.tau0 / density }, work)
-            }
+        let friction = match &material.friction {
+            case::Friction::Coulomb(_) => Law::Coulomb(Coulomb { mu }),
+            case::Friction::Voellmy(law) => Law::Voellmy(Voellmy { mu, xi: law.xi, gravity: case.gravity() }),
+            case::Friction::Cohesion(law) => Law::Cohesion(Cohesion { mu, bond: law.tau0 / density }),
             case::Friction::Samosat(law) => {
                 let case::Samosat { mu, tau0, rs0, kappa, r, b } = *law;
-                self.with_friction(case, SamosAt { mu, bond: tau0 / density, rs0, kappa, r, b }, work)
+                Law::SamosAt(SamosAt { mu, bond: tau0 / density, rs0, kappa, r, b })
             }
-        }
-    }
-
-    fn with_friction<V: Visit, F: Friction>(&self, case: &Case, friction: F, work: V) -> V::Output {
+        };
         let film = case.scheme.film();
         let second = case.scheme.name == SchemeName::Balanced2;
         match self {
@@ -255,17 +248,12 @@ impl Scene {
                     |index| Flow::still(release[number(index)]),
                 ))
             }
-            Scene::Chute { cells, .. } if cells[1] == 1 => self.on_chute::<1, V, F>(case, friction, work),
-            _ => self.on_chute::<2, V, F>(case, friction, work),
+            Scene::Chute { cells, .. } if cells[1] == 1 => self.on_chute::<1, V>(case, friction, work),
+            _ => self.on_chute::<2, V>(case, friction, work),
         }
     }
 
-    fn on_chute<const D: usize, V: Visit, F: Friction>(
-        &self,
-        case: &Case,
-        friction: F,
-        work: V,
-    ) -> V::Output {
+    fn on_chute<const D: usize, V: Visit>(&self, case: &Case, friction: Law, work: V) -> V::Output {
         let (Scene::Chute { cells, grounds, initial }, Some(description)) = (self, &case.grid) else {
             unreachable!("a chute comes from a case with a grid")
         };

@@ -98,11 +98,14 @@ fn books<const D: usize>(run: &Run<D>) -> f64 {
 /// Steps and asserts at each of them what every pile keeps.
 fn keeps<const D: usize>(name: &str, setting: &Setting<D>, scheme: HadelerKuttler, steps: usize) {
     let mut run = setting.run(scheme, Setting::<D>::courant(scheme), None);
+    // The printed G bounds slopes along a line. In the plane the second order has no such theorem, and on ragged tables single
+    // edges reach 1 + 1e-3 for a while (docs/decisions/0008-sandpiles.md): there only the order of that is asserted.
+    let over = if D > 1 && scheme == SECOND_ORDER { 1e-2 } else { 1e-14 };
     for step in 0..steps {
         run.advance(f64::INFINITY).unwrap();
         let [low, steep] = extremes(setting, &run);
         assert!(low >= -1e-14, "{name}: v = {low:e} at step {step}");
-        assert!(steep <= 1.0 + 1e-14, "{name}: slope 1 + {:e} at step {step}", steep - 1.0);
+        assert!(steep <= 1.0 + over, "{name}: slope 1 + {:e} at step {step}", steep - 1.0);
         let error = books(&run);
         assert!(error.abs() <= 1e-14, "{name}: books off by {error:e} at step {step}");
     }

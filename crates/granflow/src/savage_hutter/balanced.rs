@@ -566,8 +566,8 @@ where
 
         let thickness = bed.thickness(new).max(R::of(f64::MIN_POSITIVE));
         let old = edges.u;
-        let speed = bed.square(old).sqrt();
-        let law = self.friction.resistance(thickness, speed, bed.load(old), bed.weight_at_rest());
+        let square = bed.square(old);
+        let law = self.friction.resistance(thickness, square, bed.load(old), bed.weight_at_rest());
         let still = state.is_still();
         let mut dry = law.dry;
         if R::any(still) {
@@ -580,7 +580,7 @@ where
         // Slower than before, and within a step not by the last place of its depth: it has stopped.
         let mut spent = (left * dt * largest(per)).le(R::of(1e-15) * new);
         if R::any(spent) {
-            spent = spent & left.le(bed.square(old).sqrt() * h);
+            spent = spent & left.le(square.sqrt() * h);
         }
         let stops = left.le(zero) | spent | new.lt(R::of(self.film)) | new.le(zero);
         let mut keep = left / R::select(stops, R::of(1.0), size);
@@ -593,7 +593,8 @@ where
         if LIMITED && self.slopes {
             // Along the new velocity friction is first order in time where the flow turns. Where a step takes at most
             // a quarter of the momentum it acts along the old one, as in a forward-Euler step.
-            let taken = dt * depth * (law.dry + law.drag * (speed * speed));
+            let speed = square.sqrt();
+            let taken = dt * depth * (law.dry + law.drag * square);
             let far = (taken * R::of(4.0)).lt(size) & !(still | stops | speed.le(zero));
             let share = taken / R::select(far, speed, R::of(1.0));
             unroll!(k in D => {

@@ -7,7 +7,7 @@ use crate::hadeler_kuttler::{self, Pile};
 use crate::raster::Raster;
 use crate::savage_hutter::Flow;
 use crate::savage_hutter::balanced::Balanced;
-use crate::savage_hutter::friction::Coulomb;
+use crate::savage_hutter::friction::{Coulomb, Law};
 use crate::savage_hutter::ground::{self, Chute};
 use crate::savage_hutter::kinetic::{FaceDepth, Kinetic, VERFAHREN_1, VERFAHREN_5};
 use crate::scheme::Boundary;
@@ -118,6 +118,8 @@ pub const SETUPS: &[Setup] = &[
 ];
 
 const FRICTION: Coulomb = Coulomb { mu: 0.47 };
+/// As cases have it.
+const LAW: Law = Law::Coulomb(FRICTION);
 const FILM: f64 = 1e-9;
 const COURANT: StepSize = StepSize::Courant(0.4);
 
@@ -148,17 +150,17 @@ fn cap<const D: usize>(sheet: &Grid<D>, extent: Extent, index: [usize; D]) -> Fl
     Flow { h, q: u.map(|u| h * u) }
 }
 
-fn balanced<B>(second: bool) -> (Balanced<Coulomb, B>, Stages) {
+fn balanced<B>(second: bool) -> (Balanced<Law, B>, Stages) {
     match second {
-        false => (Balanced::first(FRICTION, FILM), EULER),
-        true => (Balanced::second(FRICTION, FILM), SSP_RK2),
+        false => (Balanced::first(LAW, FILM), EULER),
+        true => (Balanced::second(LAW, FILM), SSP_RK2),
     }
 }
 
 pub(super) fn on_plane<const D: usize>(
     second: bool,
     extent: Extent,
-) -> Begun<D, Balanced<Coulomb, Chute<D, f64>>> {
+) -> Begun<D, Balanced<Law, Chute<D, f64>>> {
     let sheet = grid::<D>(extent.cells, Boundary::Open);
     let (scheme, stages) = balanced(second);
     let start = |index| cap(&sheet, extent, index);
@@ -174,10 +176,7 @@ fn as_published(published: Kinetic, extent: Extent) -> Begun<2, Kinetic> {
     Begun::new(Simulation::new(scheme, sheet, EULER, COURANT, |_| plane(), start), extent.all())
 }
 
-pub(super) fn on_terrain(
-    second: bool,
-    extent: Extent,
-) -> Begun<2, Balanced<Coulomb, ground::Terrain<2, f64>>> {
+pub(super) fn on_terrain(second: bool, extent: Extent) -> Begun<2, Balanced<Law, ground::Terrain<2, f64>>> {
     let sheet = grid::<2>(extent.cells, Boundary::Nothing);
     let height = |number: usize| {
         let [x, y] = sheet.centre(sheet.index(number));
