@@ -537,12 +537,26 @@ fn avalanche(order: Order) -> support::Run<2, Terrain<2, f64>> {
     })
 }
 
-fn bits(run: &support::Run<2, Terrain<2, f64>>) -> Vec<u64> {
-    let mut all: Vec<u64> =
-        run.collect(|c| [c.state.h, c.state.q[0], c.state.q[1]].map(f64::to_bits)).concat();
-    all.extend(run.clock().iter().take(2).map(|v| v.to_bits()));
-    all.extend(run.out().map(f64::to_bits));
-    all
+/// Lumps that run off every side of a plane whose tilt varies in one half: tiles enough for rectangles of several rows on
+/// one thread and of one row on three, of one ground and of many.
+fn spill(order: Order) -> support::Run<2, Chute<2, f64>> {
+    let sheet = grid([160, 220], [0.0; 2], 0.1, Boundary::Open);
+    let ground = |[x, y]: [f64; 2]| plane([0.1 + 0.01 * if y > 11.0 { x } else { 0.0 }, 0.05], 0.4);
+    let grounds: Vec<_> =
+        (0..sheet.count()).map(|number| ground(sheet.centre(sheet.index(number)))).collect();
+    run(order, (0.3, 1e-6), order.courant(), sheet, &grounds, |[x, y], _| {
+        let h = ((1.3 * x).sin() * (0.9 * y).cos() - 0.1).max(0.0);
+        let away = [x - 8.0, y - 11.0];
+        if away[0].hypot(away[1]) < 4.0 { Flow::still(h) } else { Flow { h, q: away.map(|d| 0.1 * h * d) } }
+    })
+}
+
+fn bits<B: Bed<2, f64>>(run: &support::Run<2, B>) -> Vec<u64> {
+    let mut all: Vec<f64> = run.collect(|c| [c.state.h, c.state.q[0], c.state.q[1]]).concat();
+    let totals = run.totals();
+    all.extend([totals.volume, totals.film, totals.speed, totals.energy, run.time(), run.step() as f64]);
+    all.extend(run.out());
+    all.into_iter().map(f64::to_bits).collect()
 }
 
 #[test]
@@ -555,16 +569,38 @@ fn mass_is_kept_on_terrain_with_a_hole() {
     }
 }
 
+fn threads_agree<B: Bed<2, f64>>(name: &str, build: impl Fn() -> support::Run<2, B>, count: usize) {
+    let results = [1, 2, 3].map(|threads| {
+        let mut run = build();
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("threads");
+        pool.install(|| steps(&mut run, count));
+        bits(&run)
+    });
+    assert!(results[0] == results[1] && results[0] == results[2], "{name}");
+}
+
 #[test]
 fn one_two_and_three_threads_give_the_same_bits() {
     for order in ORDERS {
-        let results = [1, 2, 3].map(|threads| {
-            let mut run = avalanche(order);
-            let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("threads");
-            pool.install(|| steps(&mut run, 150));
-            bits(&run)
+        threads_agree(&format!("avalanche, {order:?}"), || avalanche(order), 150);
+        threads_agree(&format!("spill, {order:?}"), || spill(order), 40);
+    }
+}
+
+#[test]
+fn rectangles_of_tiles_change_nothing() {
+    for order in ORDERS {
+        let (mut asleep, mut awake) = (spill(order), spill(order));
+        alone(|| {
+            for step in 0..60 {
+                steps(&mut asleep, 1);
+                awake.wake_all();
+                steps(&mut awake, 1);
+                assert!(bits(&asleep) == bits(&awake), "{order:?}, step {step}");
+            }
         });
-        assert!(results[0] == results[1] && results[0] == results[2], "{order:?}");
+        assert!(asleep.updates() < awake.updates(), "nothing slept");
+        assert!(asleep.out()[..4].iter().all(|out| *out > 0.0), "{:?}", asleep.out());
     }
 }
 

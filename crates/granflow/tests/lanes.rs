@@ -115,6 +115,8 @@ fn lanes_are_the_scalar_on_planes() {
     on_planes([67, 21], Boundary::Wall);
     on_planes([130, 9], Boundary::Open);
     on_planes([9, 40], Boundary::Periodic);
+    // Rectangles of tiles, several rows high.
+    on_planes([66, 260], Boundary::Open);
 }
 
 fn on_terrain<F: Friction>(name: &str, friction: F) {

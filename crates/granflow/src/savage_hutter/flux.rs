@@ -172,4 +172,23 @@ mod tests {
         let [left, right] = halves(0.0, 0.0, 0.4);
         assert_eq!((left.mass, left.push, right.mass, right.push), (0.0, 0.0, 0.0, 0.0));
     }
+
+    #[test]
+    fn depths_down_to_none_and_below_have_a_velocity() {
+        let mut h = 1.0;
+        while h > 0.0 {
+            for u in [0.0, 1.0, -3.0] {
+                let density = Density::new(h, h * u, 0.4);
+                assert!(
+                    density.halves(h).iter().all(|half| (half.mass + half.push).is_finite()),
+                    "{h:e} {u}"
+                );
+                assert!(h < 1e-200 || (density.u - u).abs() <= 1e-15 * u.abs(), "{h:e} {u}");
+            }
+            h *= 0.1;
+        }
+        // Without pressure; below 0, where the published schemes of the mean depth may come.
+        assert_eq!(Density::new(2.0, 3.0, 0.0).u, 1.5);
+        assert_eq!(Density::new(-1e-3, 1e-3, 0.4).u, 0.0);
+    }
 }

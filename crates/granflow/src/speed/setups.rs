@@ -9,7 +9,7 @@ use crate::savage_hutter::Flow;
 use crate::savage_hutter::balanced::Balanced;
 use crate::savage_hutter::friction::{Coulomb, Law};
 use crate::savage_hutter::ground::{self, Chute};
-use crate::savage_hutter::kinetic::{Kinetic, VERFAHREN_1, VERFAHREN_5};
+use crate::savage_hutter::kinetic::{FaceDepth, Kinetic, VERFAHREN_1, VERFAHREN_5};
 use crate::scheme::Boundary;
 use crate::simulation::{Simulation, StepSize};
 use crate::terrain::{Curvature, Terrain};
@@ -134,14 +134,17 @@ fn plane<const D: usize>() -> Chute<D, f64> {
     Chute { tilt, beta: 0.9, cos: 0.954, curvature: 0.0 }
 }
 
-/// A cap of 0.2 on a layer of 0.02, which spreads slowly and flows down fast enough for no cell to stop.
+/// Depth of the layer.
+const LAYER: f64 = 0.02;
+
+/// A cap of 0.2 on the layer, which spreads slowly and flows down fast enough for no cell to stop.
 fn cap<const D: usize>(sheet: &Grid<D>, extent: Extent, index: [usize; D]) -> Flow<D, f64> {
     if !extent.is_wet(index) {
         return Flow::still(0.0);
     }
     let x = sheet.centre(index);
     let square: f64 = x.iter().map(|x| x * x).sum();
-    let h = 0.02 + 0.2 * (1.0 - square / 0.09).max(0.0);
+    let h = LAYER + 0.2 * (1.0 - square / 0.09).max(0.0);
     let mut u = x.map(|x| 0.2 * x);
     u[0] += 0.15;
     Flow { h, q: u.map(|u| h * u) }
@@ -167,7 +170,9 @@ pub(super) fn on_plane<const D: usize>(
 fn as_published(published: Kinetic, extent: Extent) -> Begun<2, Kinetic> {
     let sheet = grid::<2>(extent.cells, Boundary::Open);
     let scheme = Kinetic { friction: FRICTION, ..published };
-    let start = |index| cap(&sheet, extent, index);
+    // Beside dry ground a mean depth takes from a cell what it does not hold: there the layer goes on, at rest.
+    let beside = if scheme.resting == FaceDepth::Mean { LAYER } else { 0.0 };
+    let start = |index| if extent.is_wet(index) { cap(&sheet, extent, index) } else { Flow::still(beside) };
     Begun::new(Simulation::new(scheme, sheet, EULER, COURANT, |_| plane(), start), extent.all())
 }
 
