@@ -114,7 +114,7 @@ fn sizes(setup: &Setup, asked: &[usize]) -> Vec<usize> {
 /// Checks everything that can be wrong before work starts.
 fn plan(options: &Options) -> Result<Plan, Failure> {
     let setups = match options.scheme.as_slice() {
-        [] => SETUPS.iter().collect(),
+        [] => SETUPS.iter().filter(|setup| setup.dry || options.wet == 1.0).collect(),
         names => names.iter().map(|name| named(name)).collect::<Result<_, _>>()?,
     };
     let instructions = match options.instructions.as_str() {
@@ -144,6 +144,10 @@ fn plan(options: &Options) -> Result<Plan, Failure> {
     }
     let plan = Plan { setups, cells: options.cells.clone(), threads, instructions };
     for setup in &plan.setups {
+        if !setup.dry && options.wet < 1.0 {
+            let message = format!("{} is not positive beside dry cells", setup.name);
+            return Err(Failure::usage(message, "leave it out, or --wet"));
+        }
         for cells in sizes(setup, &plan.cells) {
             fits(setup, cells)?;
         }

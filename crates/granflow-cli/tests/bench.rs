@@ -87,7 +87,7 @@ fn what_ran_beside_is_compared_with() {
 fn what_is_wrong_is_said_before_work_starts() {
     let folder = tempfile::tempdir().unwrap();
     std::fs::write(folder.path().join("file"), "").unwrap();
-    let wrong: [(&[&str], i32, &[&str]); 11] = [
+    let wrong: [(&[&str], i32, &[&str]); 12] = [
         (&["--scheme", "balancd"], 2, &["`balancd`", "did you mean `balanced`?", "adaptive"]),
         (&["--threads", "0"], 2, &["--threads"]),
         (&["--threads", "2000"], 2, &["2000 threads", "cores"]),
@@ -95,6 +95,7 @@ fn what_is_wrong_is_said_before_work_starts() {
         (&["--cells", "10000000"], 2, &["GB are free", "fewer --cells"]),
         (&["--wet", "0"], 2, &["share of 0", "up to 1"]),
         (&["--wet", "nan"], 2, &["share of NaN"]),
+        (&["--scheme", "verfahren_5", "--wet", "0.5"], 2, &["verfahren_5 is not positive"]),
         (&["--instructions", "wide"], 2, &["`wide`", "widest, narrow, scalar"]),
         (&["--json", "file/speed.json"], 4, &["file/speed.json", "cannot write"]),
         (&["--beside", "exit 3"], 2, &["`exit 3` failed"]),

@@ -101,7 +101,7 @@ mod tests {
     #[test]
     fn every_setup_runs_until_its_restart_and_again() {
         for setup in SETUPS {
-            for wet in [1.0, 0.3] {
+            for wet in [1.0, 0.3].into_iter().filter(|wet| *wet == 1.0 || setup.dry) {
                 let mut load = setup.begin(Extent { cells: 40, wet });
                 assert_eq!(load.cells(), 40_usize.pow(setup.dimensions as u32), "{}", setup.name);
                 for _ in 0..3 {

@@ -23,6 +23,8 @@ pub struct Setup {
     pub about: &'static str,
     /// How many.
     pub dimensions: usize,
+    /// May a part of it be dry? The published schemes lose positivity there, all but the first.
+    pub dry: bool,
     begin: fn(Extent) -> Box<dyn Load>,
 }
 
@@ -59,60 +61,70 @@ pub const SETUPS: &[Setup] = &[
         name: "balanced",
         about: "first order, an inclined plane",
         dimensions: 2,
+        dry: true,
         begin: |extent| Box::new(on_plane::<2>(false, extent)),
     },
     Setup {
         name: "balanced_terrain",
         about: "first order, a bed of varying slope and curvature",
         dimensions: 2,
+        dry: true,
         begin: |extent| Box::new(on_terrain(false, extent)),
     },
     Setup {
         name: "balanced_2",
         about: "second order, two stages, an inclined plane",
         dimensions: 2,
+        dry: true,
         begin: |extent| Box::new(on_plane::<2>(true, extent)),
     },
     Setup {
         name: "balanced_2_terrain",
         about: "second order, two stages, a bed of varying slope and curvature",
         dimensions: 2,
+        dry: true,
         begin: |extent| Box::new(on_terrain(true, extent)),
     },
     Setup {
         name: "balanced_1d",
         about: "first order, an inclined plane",
         dimensions: 1,
+        dry: true,
         begin: |extent| Box::new(on_plane::<1>(false, extent)),
     },
     Setup {
         name: "verfahren_1",
         about: "as published, an inclined plane",
         dimensions: 2,
+        dry: true,
         begin: |extent| Box::new(as_published(VERFAHREN_1, extent)),
     },
     Setup {
         name: "verfahren_5",
         about: "as published, an inclined plane",
         dimensions: 2,
+        dry: false,
         begin: |extent| Box::new(as_published(VERFAHREN_5, extent)),
     },
     Setup {
         name: "first_order",
         about: "a sandpile, a square table",
         dimensions: 2,
+        dry: true,
         begin: |extent| Box::new(on_table(FIRST_ORDER, extent)),
     },
     Setup {
         name: "second_order",
         about: "a sandpile, two stages, a square table",
         dimensions: 2,
+        dry: true,
         begin: |extent| Box::new(on_table(SECOND_ORDER, extent)),
     },
     Setup {
         name: "adaptive",
         about: "a sandpile, two stages, a square table",
         dimensions: 2,
+        dry: true,
         begin: |extent| Box::new(on_table(ADAPTIVE, extent)),
     },
 ];
