@@ -377,7 +377,7 @@ impl<'a, const D: usize, L: Wide, T: Scheme<D, L>> Strip<'a, D, L, T> {
         if !count.all_stir::<L>(column) {
             count.stir::<L>(column, live & (differs | !self.scheme.rests(&here)));
         }
-        let infinite = live & !(sum - sum).same(zero);
+        let infinite = live & !(sum * zero).same(zero);
         if L::any(infinite) {
             count.lose::<L>(column, infinite);
         }
