@@ -521,9 +521,9 @@ fn mass_is_kept_and_what_leaves_is_booked() {
     }
 }
 
-/// A pile on bumpy ground that partly leaves, partly stops; nodata in one corner.
+/// A pile on bumpy ground that runs out and stops; nodata in one corner, and room beside it for tiles to sleep in.
 fn avalanche(order: Order) -> support::Run<2, Terrain<2, f64>> {
-    let sheet = grid([83, 61], [0.0; 2], 2.0, Boundary::Nothing);
+    let sheet = grid([83, 125], [0.0, -64.0], 2.0, Boundary::Nothing);
     let bed = bumps(5);
     let grounds = terrain(&sheet, |[x, y]| {
         if x + y > 250.0 {
@@ -537,17 +537,18 @@ fn avalanche(order: Order) -> support::Run<2, Terrain<2, f64>> {
     })
 }
 
-/// Lumps that run off every side of a plane whose tilt varies in one half: tiles enough for rectangles of several rows on
-/// one thread and of one row on three, of one ground and of many.
+/// Lumps, moving ones and still ones, that run off every side of a plane; it is bare in the middle, and its tilt varies in
+/// one half. Tiles enough for rectangles of several rows on one thread and of one row on three, of one ground and of many.
 fn spill(order: Order) -> support::Run<2, Chute<2, f64>> {
     let sheet = grid([160, 220], [0.0; 2], 0.1, Boundary::Open);
     let ground = |[x, y]: [f64; 2]| plane([0.1 + 0.01 * if y > 11.0 { x } else { 0.0 }, 0.05], 0.4);
     let grounds: Vec<_> =
         (0..sheet.count()).map(|number| ground(sheet.centre(sheet.index(number)))).collect();
     run(order, (0.3, 1e-6), order.courant(), sheet, &grounds, |[x, y], _| {
-        let h = ((1.3 * x).sin() * (0.9 * y).cos() - 0.1).max(0.0);
         let away = [x - 8.0, y - 11.0];
-        if away[0].hypot(away[1]) < 4.0 { Flow::still(h) } else { Flow { h, q: away.map(|d| 0.1 * h * d) } }
+        let bare = away[0].abs() < 5.5 && away[1].abs() < 7.5;
+        let h = if bare { 0.0 } else { ((1.3 * x).sin() * (0.9 * y).cos() - 0.1).max(0.0) };
+        if (1.3 * x).sin() < 0.0 { Flow::still(h) } else { Flow { h, q: away.map(|d| 0.1 * h * d) } }
     })
 }
 
