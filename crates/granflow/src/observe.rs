@@ -17,6 +17,8 @@ pub struct Maps {
 }
 
 impl Maps {
+    /// Of all of them.
+    pub(crate) const BYTES_PER_CELL: usize = 4 * size_of::<f64>();
     /// Nothing seen yet.
     pub fn new(layout: &Layout) -> Maps {
         Maps {

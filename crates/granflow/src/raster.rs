@@ -98,6 +98,11 @@ impl Raster {
         self.values[row * self.columns + column]
     }
 
+    /// Column and row of the cell at an index of [`Raster::values`].
+    pub fn place(&self, index: usize) -> [usize; 2] {
+        [index % self.columns, index / self.columns]
+    }
+
     /// Smallest and largest value, `None` where all is nodata.
     pub fn range(&self) -> Option<(f64, f64)> {
         let valid = self.values.iter().filter(|value| !value.is_nan());

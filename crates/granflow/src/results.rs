@@ -227,8 +227,8 @@ impl Finished {
 fn runout(plane: &Plane, pressure: &[f64]) -> Option<(f64, f64)> {
     let bed = plane.bed()?;
     let columns = plane.x.len();
-    let top =
-        (0..bed.len()).filter(|&k| plane.release[k] > 0.0).max_by(|&a, &b| bed[a].total_cmp(&bed[b]))?;
+    let released = plane.release.iter().filter(|(_, thickness)| *thickness > 0.0).map(|(cell, _)| cell);
+    let top = released.max_by(|&a, &b| bed[a].total_cmp(&bed[b]))?;
     let from = |k: usize| {
         let (dx, dy) =
             (plane.x[k % columns] - plane.x[top % columns], plane.y[k / columns] - plane.y[top / columns]);

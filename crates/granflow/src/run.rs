@@ -111,13 +111,12 @@ pub fn run(
         .build()
         .map_err(|error| RunError::Threads(error.to_string()))?;
     // The loop itself is one of the pool's threads: a step then needs no queue, and no allocation.
-    pool.install(|| scene.simulate(case, Work { case, options, scene: &scene, stop, report, clock }))
+    pool.install(|| scene.simulate(case, Work { case, options, stop, report, clock }))
 }
 
 struct Work<'a> {
     case: &'a Case,
     options: &'a Options,
-    scene: &'a Scene,
     stop: &'a AtomicBool,
     report: &'a mut (dyn FnMut(&Status) + Send),
     clock: Instant,
@@ -126,13 +125,11 @@ struct Work<'a> {
 impl Visit for Work<'_> {
     type Output = Result<Finished, RunError>;
 
-    fn visit<const D: usize, S>(self, simulation: Simulation<D, S>) -> Self::Output
+    fn visit<const D: usize, S>(self, plane: Plane, simulation: Simulation<D, S>) -> Self::Output
     where
         S: Scheme<D, f64, State = Flow<D, f64>>,
         S::Ground: Bed<D, f64>,
     {
-        let (grid, scene) = (simulation.grid(), self.scene);
-        let plane = Plane::of(scene, &grid.origin, &grid.size, grid.cells.as_slice());
         Run::start(self, simulation, plane, None)?.go()
     }
 

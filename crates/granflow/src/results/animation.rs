@@ -115,8 +115,13 @@ impl<'a> Scene<'a> {
             None => all().fold(0.0, f64::max),
         };
         let chute = matches!(story.plane.under, Under::Chute);
-        let window = (!story.plane.y.is_empty() && chute)
-            .then(|| Window::around(story, peak.unwrap_or(&story.plane.release)));
+        let window = (!story.plane.y.is_empty() && chute).then(|| match peak {
+            Some(peak) => Window::around(story, peak),
+            None => {
+                let cells = story.plane.x.len() * story.plane.y.len();
+                Window::around(story, &story.plane.release.dense(cells))
+            }
+        });
         let top = if most > 0.0 { most } else { 1.0 };
         Scene { story, ground: Ground::of(story), window, top, ranges: Ranges::default() }
     }

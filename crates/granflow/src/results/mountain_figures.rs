@@ -42,7 +42,7 @@ impl<'a> Ground<'a> {
         Some(Ground {
             extent,
             bed: &raster.values,
-            release: outline(release, release_threshold(release)),
+            release: outline(&release.dense(raster.values.len()), release_threshold(release)),
             footprint: story.map("peak_thickness").map_or(Vec::new(), |map| outline(map, REACHED)),
             path: path(story),
         })

@@ -6,8 +6,10 @@ use crate::output::frames::Frames;
 use crate::output::ledger::{Entry, Ledger};
 use crate::output::summary::Summary;
 use crate::raster::Raster;
+use crate::release::Sparse;
 use netcdf_reader::{NcFile, NcSliceInfo, NcSliceInfoElem};
 use std::path::Path;
+use std::sync::Arc;
 
 /// A run as its figures see it.
 #[derive(Debug, Clone)]
@@ -127,12 +129,12 @@ impl Story {
                 wall_y: faces("wall_y")?,
             })
         } else if has("bed") {
-            Under::Mountain(raster(&x, &y, whole("bed")?).map_err(foreign)?)
+            Under::Mountain(Arc::new(raster(&x, &y, whole("bed")?).map_err(foreign)?))
         } else {
             Under::Chute
         };
         let times = whole("time")?;
-        let mut plane = Plane { x, y, under, release: Vec::new() };
+        let mut plane = Plane { x, y, under, release: Sparse::default() };
         let kept = instants(&plane, times.len());
         let read = |name: &str| -> Result<Vec<Vec<f64>>, FilesError> {
             let all = NcSliceInfoElem::Slice { start: 0, end: u64::MAX, step: 1 };
@@ -163,7 +165,7 @@ impl Story {
         let first = |name: &str| {
             series.iter().find(|(own, _)| *own == name).and_then(|(_, series)| series.first()).cloned()
         };
-        plane.release = first("thickness").unwrap_or_default();
+        plane.release = Sparse::of(first("thickness").unwrap_or_default());
         if let Under::Table(table) = &mut plane.under {
             table.inside = first("rolling_layer").unwrap_or_default().iter().map(|v| !v.is_nan()).collect();
             if !table.fits(&plane.x, &plane.y) {

@@ -2,6 +2,7 @@
 
 use crate::real::{Real, dot, unroll};
 use crate::scheme::{Parts, parts};
+use crate::terrain::Terrain as Mountain;
 
 /// The neighbour's place along an axis.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -232,44 +233,44 @@ impl<const D: usize, R: Real> Terrain<D, R> {
 }
 
 impl Terrain<2, f64> {
-    /// The ground of every cell of a mountain under `gravity` \[m/s^2\], x fastest, the first row in the south.
-    pub fn cells(mountain: &crate::terrain::Terrain, gravity: f64) -> Vec<Self> {
-        let bed = &mountain.bed;
-        let cell = |number: usize| {
-            let (z, slope) = (bed.values[number], mountain.gradient[number]);
-            if z.is_nan() {
-                return Self::nothing();
+    /// The ground of a cell of a mountain under `gravity` \[m/s^2\], by column and row, the first row in the south.
+    pub fn at(mountain: &Mountain, gravity: f64, cell: [usize; 2]) -> Self {
+        let mut here = Self::unbent(mountain, gravity, cell);
+        let count = [mountain.bed.columns, mountain.bed.rows];
+        for axis in 0..2 {
+            if cell[axis] == 0 || cell[axis] + 1 == count[axis] {
+                continue;
             }
-            let cos = mountain.cosine(number);
-            let [xx, xy, yy] = mountain.hessian[number].map(|second| cos * second);
-            Terrain {
-                level: gravity * z,
-                slope,
-                cos,
-                fall: gravity * cos,
-                curvature: [[xx, xy], [xy, yy]],
-                bend: [0.0; 2],
+            let (mut lo, mut hi) = (cell, cell);
+            (lo[axis], hi[axis]) = (cell[axis] - 1, cell[axis] + 1);
+            let [lo, hi] = [lo, hi].map(|cell| Self::unbent(mountain, gravity, cell));
+            if !(lo.outside() || hi.outside() || here.outside()) {
+                let s = here.cos * here.slope[axis];
+                let pressure = (hi.beta(axis) - lo.beta(axis)) / (4.0 * mountain.bed.cell);
+                let tilt = (hi.fall * hi.cos - lo.fall * lo.cos) / (2.0 * mountain.bed.cell);
+                here.bend[axis] = pressure - (1.0 - s * s) * tilt;
             }
-        };
-        let flat: Vec<Self> = (0..bed.values.len()).map(cell).collect();
-        let bent = |number: usize| {
-            let mut here = flat[number];
-            let place = [number % bed.columns, number / bed.columns];
-            for (axis, (step, count)) in [(1, bed.columns), (bed.columns, bed.rows)].into_iter().enumerate() {
-                if place[axis] == 0 || place[axis] + 1 == count {
-                    continue;
-                }
-                let (lo, hi) = (&flat[number - step], &flat[number + step]);
-                if !(lo.outside() || hi.outside() || here.outside()) {
-                    let s = here.cos * here.slope[axis];
-                    let pressure = (hi.beta(axis) - lo.beta(axis)) / (4.0 * bed.cell);
-                    let tilt = (hi.fall * hi.cos - lo.fall * lo.cos) / (2.0 * bed.cell);
-                    here.bend[axis] = pressure - (1.0 - s * s) * tilt;
-                }
-            }
-            here
-        };
-        (0..flat.len()).map(bent).collect()
+        }
+        here
+    }
+
+    /// As [`Terrain::at`], without what the neighbours bend.
+    fn unbent(mountain: &Mountain, gravity: f64, [column, row]: [usize; 2]) -> Self {
+        let z = mountain.bed.at(column, row);
+        if z.is_nan() {
+            return Self::nothing();
+        }
+        let fit = mountain.fit([column, row]);
+        let cos = fit.cosine();
+        let [xx, xy, yy] = fit.hessian.map(|second| cos * second);
+        Terrain {
+            level: gravity * z,
+            slope: fit.gradient,
+            cos,
+            fall: gravity * cos,
+            curvature: [[xx, xy], [xy, yy]],
+            bend: [0.0; 2],
+        }
     }
 }
 
