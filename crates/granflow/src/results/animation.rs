@@ -90,7 +90,7 @@ pub(super) fn write(run: &Finished, story: &Story) -> Result<PathBuf, FilesError
 
 /// What all pictures share.
 struct Scene<'a> {
-    story: &'a Story,
+    story: &'a Story<'a>,
     ground: Option<Ground<'a>>,
     window: Option<Window>,
     /// Greatest thickness that the colours or the axis tell apart.
@@ -106,7 +106,7 @@ fn pair(fields: &[Vec<f64>]) -> (&[f64], &[f64]) {
 }
 
 impl<'a> Scene<'a> {
-    fn of(run: &Finished, story: &'a Story) -> Scene<'a> {
+    fn of(run: &Finished, story: &'a Story<'a>) -> Scene<'a> {
         let peak = run.map("peak_thickness");
         let all = || story.series("thickness").iter().flatten().copied();
         let most = match peak {

@@ -46,7 +46,7 @@ pub enum FilesError {
     },
 }
 
-impl Story {
+impl Story<'_> {
     /// Draw the standard figures into `folder`.
     ///
     /// # Errors

@@ -99,7 +99,7 @@ pub(super) fn top(values: impl Iterator<Item = f64>) -> f64 {
 }
 
 /// All figures of a run on a mountain.
-pub(super) fn mountain(story: &Story) -> Vec<Drawing<'_>> {
+pub(super) fn mountain<'a>(story: &'a Story<'a>) -> Vec<Drawing<'a>> {
     let (Some(ground), Some(peak)) = (Ground::of(story), story.map("peak_thickness")) else {
         return Vec::new();
     };
