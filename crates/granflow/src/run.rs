@@ -52,7 +52,7 @@ pub struct Status {
     pub time: f64,
     /// Steps done.
     pub step: u64,
-    /// Cells with a depth.
+    /// Cells with a depth, at the last line of `mass.csv`.
     pub wet_cells: usize,
     /// Largest speed along the bed.
     pub max_speed: f64,
@@ -160,6 +160,10 @@ struct Run<'a, 's, const D: usize, S: Scheme<D, f64>> {
     /// Largest speed, and largest kinetic energy, of the run so far.
     peak_speed: f64,
     peak_energy: f64,
+    /// The kinetic energy as it stands, known where the case asks for it.
+    energy: f64,
+    /// Cells with a depth at the last line of the ledger.
+    wet_cells: usize,
     /// Frames and ledger lines due next.
     next_frame: f64,
     next_line: f64,
@@ -209,7 +213,7 @@ impl<'s, const D: usize, S: Model<D>> Run<'_, 's, D, S> {
         let ledger = Ledger::create(&ledger_file, plane.exits())?;
         let mut run = Run::new(work, simulation, plane, sand, frames, ledger, initial);
         run.peak_speed = run.simulation.speed();
-        run.peak_energy = run.simulation.energy();
+        run.peak_energy = run.energy;
         run.frame()?;
         run.schedule();
         Ok(run)
@@ -224,7 +228,7 @@ impl<'s, const D: usize, S: Model<D>> Run<'_, 's, D, S> {
         ledger: Ledger,
         initial: f64,
     ) -> Run<'a, 's, D, S> {
-        let now = Instant::now();
+        let (now, energy) = (Instant::now(), simulation.totals().energy);
         Run {
             work,
             simulation,
@@ -236,6 +240,8 @@ impl<'s, const D: usize, S: Model<D>> Run<'_, 's, D, S> {
             initial,
             peak_speed: 0.0,
             peak_energy: 0.0,
+            energy,
+            wet_cells: 0,
             next_frame: f64::INFINITY,
             next_line: f64::INFINITY,
             saved: now,
@@ -325,10 +331,13 @@ impl<'s, const D: usize, S: Model<D>> Run<'_, 's, D, S> {
 
     fn after_step(&mut self) -> Result<(), RunError> {
         let (time, step) = (self.simulation.time(), self.simulation.step());
-        self.peak_speed = self.peak_speed.max(self.simulation.speed());
-        self.peak_energy = self.peak_energy.max(self.simulation.energy());
-        let (_, wet_cells) = self.simulation.counts();
-        (self.work.report)(&Status { time, step, wet_cells, max_speed: self.simulation.speed() });
+        let max_speed = self.simulation.speed();
+        self.peak_speed = self.peak_speed.max(max_speed);
+        if self.work.case.time.stop.is_some() {
+            self.energy = self.simulation.totals().energy;
+            self.peak_energy = self.peak_energy.max(self.energy);
+        }
+        (self.work.report)(&Status { time, step, wet_cells: self.wet_cells, max_speed });
         let by_steps = match self.work.case.frames() {
             case::Frames::Steps(every) => step % every == 0,
             _ => false,
@@ -379,7 +388,7 @@ impl<'s, const D: usize, S: Model<D>> Run<'_, 's, D, S> {
         if let Some(stop) = &time.stop
             && simulation.step() > 0
             && self.peak_energy > 0.0
-            && simulation.energy() < stop.kinetic_energy * self.peak_energy
+            && self.energy < stop.kinetic_energy * self.peak_energy
         {
             return Some(StopReason::KineticEnergy);
         }
@@ -413,6 +422,7 @@ impl<'s, const D: usize, S: Model<D>> Run<'_, 's, D, S> {
             return Ok(());
         }
         let totals = self.simulation.totals();
+        self.wet_cells = totals.wet;
         let out = self.simulation.out();
         let (gone, mass_in) = (output::ledger::sum(out), self.simulation.poured());
         self.ledger.append(Entry {
