@@ -3,7 +3,7 @@
 //! Layout, all little endian: the line `granflow checkpoint 1`, a u32 length, that many bytes of JSON (version, case, step,
 //! names and lengths), then as raw f64 the time, the scalars and the arrays in that order, then the CRC-32 of all before.
 
-use super::{Error, Precision, whole_file};
+use super::{Error, Precision, Summed, whole_file};
 use serde::{Deserialize, Serialize};
 use std::borrow::Cow;
 use std::fs;
@@ -49,6 +49,19 @@ impl Checkpoint<'_> {
     /// # Errors
     /// [`Error::Io`]; the older checkpoint then remains.
     pub fn write(&self, path: &Path) -> Result<(), Error> {
+        write_from(path, &self.head(), |out| {
+            let mut bytes = Vec::new();
+            for part in self.arrays.iter().flat_map(|(_, values)| values.chunks(1 << 15)) {
+                bytes.clear();
+                Precision::F64.encode(part, &mut bytes);
+                out.write_all(&bytes)?;
+            }
+            Ok(())
+        })
+    }
+
+    /// The bytes before the arrays.
+    pub(crate) fn head(&self) -> Vec<u8> {
         let header = Header {
             granflow: VERSION.into(),
             case: self.case.clone(),
@@ -56,25 +69,13 @@ impl Checkpoint<'_> {
             scalars: self.scalars.iter().map(|(name, _)| name.clone()).collect(),
             arrays: self.arrays.iter().map(|(name, values)| (name.clone(), values.len())).collect(),
         };
-        let header = serde_json::to_vec(&header).map_err(|error| Error::invalid(path, error.to_string()))?;
-        whole_file(path, |out| {
-            let mut out = Summed { out, crc: crc32fast::Hasher::new() };
-            out.write_all(MAGIC)?;
-            out.write_all(&(header.len() as u32).to_le_bytes())?;
-            out.write_all(&header)?;
-            out.write_all(&self.time.to_le_bytes())?;
-            for (_, value) in &self.scalars {
-                out.write_all(&value.to_le_bytes())?;
-            }
-            let mut bytes = Vec::new();
-            for part in self.arrays.iter().flat_map(|(_, values)| values.chunks(1 << 15)) {
-                bytes.clear();
-                Precision::F64.encode(part, &mut bytes);
-                out.write_all(&bytes)?;
-            }
-            let crc = out.crc.clone().finalize();
-            out.write_all(&crc.to_le_bytes())
-        })
+        let header = serde_json::to_vec(&header).expect("names and counts are JSON");
+        let mut bytes = MAGIC.to_vec();
+        bytes.extend((header.len() as u32).to_le_bytes());
+        bytes.extend(header);
+        Precision::F64.encode(&[self.time], &mut bytes);
+        self.scalars.iter().for_each(|(_, value)| Precision::F64.encode(&[*value], &mut bytes));
+        bytes
     }
 
     /// The array called `name`.
@@ -88,6 +89,21 @@ impl Checkpoint<'_> {
     pub fn scalar(&self, name: &str) -> Option<f64> {
         self.scalars.iter().find(|(own, _)| own == name).map(|&(_, value)| value)
     }
+}
+
+/// Writes a checkpoint as [`Checkpoint::write`] does, from its [`Checkpoint::head`] and what `arrays` gives: the raw f64 of
+/// its arrays, one after the other.
+pub(crate) fn write_from(
+    path: &Path,
+    head: &[u8],
+    arrays: impl FnOnce(&mut dyn Write) -> io::Result<()>,
+) -> Result<(), Error> {
+    whole_file(path, |out| {
+        let mut out = Summed::new(out);
+        out.write_all(head)?;
+        arrays(&mut out)?;
+        out.finish()
+    })
 }
 
 impl Checkpoint<'static> {
@@ -158,24 +174,6 @@ impl Checkpoint<'static> {
             .map(|(name, length)| (name, numbers.by_ref().take(length).collect()))
             .collect();
         Ok(Self { case: header.case, step: header.step, time, scalars, arrays })
-    }
-}
-
-/// A sink that keeps the checksum of what passes.
-struct Summed<'a> {
-    out: &'a mut dyn Write,
-    crc: crc32fast::Hasher,
-}
-
-impl Write for Summed<'_> {
-    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
-        let written = self.out.write(bytes)?;
-        self.crc.update(&bytes[..written]);
-        Ok(written)
-    }
-
-    fn flush(&mut self) -> io::Result<()> {
-        self.out.flush()
     }
 }
 

@@ -169,24 +169,37 @@ impl Dataset {
         mut frames: Option<&mut Frames>,
         out: &mut dyn Write,
     ) -> io::Result<()> {
+        let precision = variable.precision;
+        let outside = self.outside.as_ref().filter(|outside| outside.len() == maps.length);
+        let mut nothing = Vec::new();
+        precision.encode(&[f64::NAN], &mut nothing);
         let mut bytes = Vec::new();
         for instant in 0..maps.count {
-            let mut map = match (&variable.values, frames.as_deref_mut()) {
-                (Values::Static(map), _) => map.clone(),
-                (Values::Series(series), _) => series[instant].clone(),
-                (Values::Stored(_), Some(frames)) => {
-                    frames.read(instant, maps.field).map_err(io::Error::other)?
+            match (&variable.values, frames.as_deref_mut()) {
+                // What is stored as it is wanted is not taken apart.
+                (Values::Stored(_), Some(frames)) if frames.precision() == precision => {
+                    frames.read_bytes(instant, maps.field, &mut bytes).map_err(io::Error::other)?;
                 }
-                (Values::Stored(_), None) => unreachable!("plan() has refused this"),
-            };
-            if let Some(outside) = self.outside.as_ref().filter(|outside| outside.len() == map.len()) {
-                map.iter_mut()
-                    .zip(outside)
-                    .filter(|(_, outside)| **outside)
-                    .for_each(|(value, _)| *value = f64::NAN);
+                (values, frames) => {
+                    let read = match (values, frames) {
+                        (Values::Stored(_), Some(frames)) => {
+                            frames.read(instant, maps.field).map_err(io::Error::other)?
+                        }
+                        _ => Vec::new(),
+                    };
+                    let map = match values {
+                        Values::Static(map) => map,
+                        Values::Series(series) => &series[instant],
+                        Values::Stored(_) => &read,
+                    };
+                    bytes.clear();
+                    precision.encode(map, &mut bytes);
+                }
             }
-            bytes.clear();
-            variable.precision.encode(&map, &mut bytes);
+            if let Some(outside) = outside {
+                let cells = bytes.chunks_exact_mut(precision.width()).zip(outside);
+                cells.filter(|(_, outside)| **outside).for_each(|(cell, _)| cell.copy_from_slice(&nothing));
+            }
             out.write_all(&bytes)?;
         }
         Ok(())
