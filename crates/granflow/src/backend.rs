@@ -17,7 +17,6 @@ use rayon::prelude::*;
 use std::marker::PhantomData;
 use std::ops::Range;
 use strip::{Desk, Strip};
-pub(crate) use tally::Count;
 pub use tally::Tally;
 
 /// Most cells side by side that are computed in one go, with the neighbour at each end.

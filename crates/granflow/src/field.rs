@@ -4,7 +4,7 @@ use crate::grid::Layout;
 use crate::scheme::Parts;
 
 /// One padded array per number of a cell value.
-#[derive(Debug)]
+#[derive(Debug, Default)]
 pub struct Field {
     /// The arrays, each [`Layout::len`] long.
     pub parts: Vec<Vec<f64>>,
@@ -19,6 +19,14 @@ impl Field {
     #[inline(always)]
     pub fn get<P: Parts<f64>>(&self, place: usize) -> P {
         P::gather(|k| self.parts[k][place])
+    }
+    /// The values at `start` and the next places, opened for reading: one check for all numbers of a cell.
+    ///
+    /// # Panics
+    /// If they reach beyond the arrays.
+    pub fn row(&self, start: usize, len: usize) -> Row<'_> {
+        let part = |k: usize| self.parts.get(k).map_or(&[][..], |part| &part[start..start + len]);
+        Row { parts: std::array::from_fn(part), count: self.parts.len(), len }
     }
     /// Set the value at `place`.
     #[inline(always)]
@@ -57,6 +65,24 @@ fn zeros(len: usize) -> Vec<f64> {
 
 /// Most numbers that a cell value has.
 pub(crate) const MOST: usize = 16;
+
+/// Neighbouring places of a field, opened for reading.
+#[derive(Clone, Copy)]
+pub struct Row<'a> {
+    parts: [&'a [f64]; MOST],
+    count: usize,
+    len: usize,
+}
+
+impl Row<'_> {
+    /// The value `i` places behind the first.
+    #[inline(always)]
+    pub fn get<P: Parts<f64>>(&self, i: usize) -> P {
+        assert!(i < self.len && P::COUNT <= self.count, "a cell beyond its row");
+        // SAFETY: the parts below COUNT are `len` long, and `Parts` asks for no others.
+        P::gather(|k| unsafe { *self.parts[k].get_unchecked(i) })
+    }
+}
 
 /// A field opened for reading in the inner loop.
 #[derive(Clone, Copy)]

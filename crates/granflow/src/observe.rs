@@ -38,6 +38,16 @@ impl Maps {
         ]
         .into_iter()
     }
+    /// As [`Maps::named`], to keep.
+    pub fn into_named(self) -> impl Iterator<Item = (&'static str, Vec<f64>)> {
+        [
+            ("peak_thickness", self.peak_thickness),
+            ("peak_speed", self.peak_speed),
+            ("arrival_time", self.arrival_time),
+            ("stopping_time", self.stopping_time),
+        ]
+        .into_iter()
+    }
     /// As [`Maps::named`], to be overwritten.
     pub fn named_mut(&mut self) -> impl Iterator<Item = (&'static str, &mut Vec<f64>)> {
         [

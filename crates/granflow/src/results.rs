@@ -139,7 +139,7 @@ impl Finished {
     pub fn write_result<'a>(&'a self, command: &str) -> Result<(), output::Error> {
         let terrain = self.plane.is_terrain();
         let (length, time) = if terrain { ("m", "s") } else { ("1", "1") };
-        let mut frames = Frames::open(self.frames.path())?.0;
+        let mut frames = self.frames.again()?;
         let mut axes = vec![Axis::time(frames.times().to_vec(), time)];
         let (x, y) = (&self.plane.x, &self.plane.y);
         let mut along = |axis, name: &str, places: &[f64]| {

@@ -4,7 +4,7 @@ mod traffic;
 
 pub use traffic::Traffic;
 
-use crate::backend::{Count, EXITS, Leak, MOST_PARTS, MOST_TILES, Run, STRIP, Sweep, Tally, Tile, tile_size};
+use crate::backend::{EXITS, Leak, MOST_PARTS, MOST_TILES, Run, STRIP, Sweep, Tally, Tile, tile_size};
 use crate::boundary;
 use crate::field::Field;
 use crate::grid::{GHOSTS, Grid, Layout};
@@ -13,6 +13,7 @@ use crate::observe::Maps;
 use crate::real::Sum;
 use crate::scheme::{Boundary, Cell, Scheme, Spacing, Watch, Window};
 use crate::time::Stages;
+use rayon::prelude::*;
 
 /// How long a step is.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -97,13 +98,18 @@ pub struct Simulation<const D: usize, S: Scheme<D, f64>> {
     leaks: Vec<Leak>,
     instructions: Instructions,
     tallies: Vec<Tally>,
-    /// The largest of their rates.
+    /// Their largest rates and speeds, by rows of tiles.
+    levels: Vec<Level>,
+    /// The largest rate of all.
     rate: f64,
     /// Tiles with ways out.
     leaky: Vec<u32>,
-    quiet: Vec<bool>,
+    /// Tiles that changed in the last step, or may yet.
+    restless: Vec<u32>,
     awake: Vec<u32>,
     runs: Vec<Run>,
+    /// Tiles that something can happen in, and which of them belong to no run yet.
+    stirring: Vec<u32>,
     waiting: Vec<bool>,
     found: Vec<Tally>,
     /// Summary maps, kept while present.
@@ -116,6 +122,15 @@ pub struct Simulation<const D: usize, S: Scheme<D, f64>> {
     supply: f64,
     poured: Sum,
     last_dt: f64,
+}
+
+/// What is largest in a row of tiles.
+#[derive(Clone, Copy, Debug, Default)]
+struct Level {
+    rate: f64,
+    speed: f64,
+    /// Not yet known.
+    stale: bool,
 }
 
 /// How many numbers [`Simulation::clock`] has.
@@ -161,11 +176,13 @@ impl<const D: usize, S: Scheme<D, f64>> Simulation<D, S> {
             spacing: Spacing::new(grid.size),
             next: now.clone(),
             tallies: vec![Tally::NONE; tiles.len()],
+            levels: vec![Level::default(); tiles.len() / across],
             rate: 0.0,
             leaky: Vec::new(),
-            quiet: vec![false; tiles.len()],
+            restless: Vec::with_capacity(tiles.len()),
             awake: Vec::with_capacity(tiles.len()),
             runs: Vec::with_capacity(tiles.len()),
+            stirring: Vec::with_capacity(tiles.len()),
             waiting: vec![false; tiles.len()],
             found: vec![Tally::NONE; tiles.len()],
             grounds: bed,
@@ -188,6 +205,7 @@ impl<const D: usize, S: Scheme<D, f64>> Simulation<D, S> {
             leaks: Vec::new(),
             instructions: Instructions::Widest,
         };
+        simulation.wake_all();
         simulation.look_at_grounds();
         simulation.survey();
         simulation
@@ -335,12 +353,44 @@ impl<const D: usize, S: Scheme<D, f64>> Simulation<D, S> {
             let around = Around { simulation: self, place: self.place(index) };
             if outside { 0.0 } else { self.scheme.margin(&around) }
         };
-        (0..self.grid.count()).map(margin).collect()
+        (0..self.grid.count()).into_par_iter().map(margin).collect()
     }
-    /// A value of every cell, x fastest.
+    /// What is made of every cell, x fastest.
     pub fn collect<T>(&self, value: impl Fn(&Cell<S::State, S::Ground>) -> T) -> Vec<T> {
         (0..self.grid.count()).map(|number| value(&self.cell(self.grid.index(number)))).collect()
     }
+    /// A value of as many cells as `values` holds, from number `from` on, x fastest, where every row is `columns` long: the
+    /// grid's own, or one less in each where the last column is left out.
+    pub fn fill(
+        &self,
+        columns: usize,
+        from: usize,
+        values: &mut [f64],
+        value: impl Fn(&Cell<S::State, S::Ground>) -> f64,
+    ) {
+        let (mut number, mut rest) = (from, values);
+        while !rest.is_empty() {
+            let (i, j) = (number % columns, number / columns);
+            let (row, after) = rest.split_at_mut((columns - i).min(rest.len()));
+            let place = self.layout.place(i as isize, j as isize);
+            let (states, grounds) = (self.now.row(place, row.len()), self.grounds.row(place, row.len()));
+            number += row.len();
+            for (i, here) in row.iter_mut().enumerate() {
+                *here = value(&Cell { state: states.get(i), ground: grounds.get(i) });
+            }
+            rest = after;
+        }
+    }
+
+    /// A value of every cell, x fastest.
+    pub fn map(&self, value: impl Fn(&Cell<S::State, S::Ground>) -> f64 + Sync) -> Vec<f64> {
+        const AT_ONCE: usize = 1 << 14;
+        let mut values = vec![0.0; self.grid.count()];
+        let parts = values.par_chunks_mut(AT_ONCE).enumerate();
+        parts.for_each(|(k, part)| self.fill(self.layout.columns, k * AT_ONCE, part, &value));
+        values
+    }
+
     /// Volume that has left by the left, right, bottom and top end and into nodata since the start.
     pub fn out(&self) -> [f64; 5] {
         self.out.map(|sum| sum.value() * self.grid.measure())
@@ -369,37 +419,53 @@ impl<const D: usize, S: Scheme<D, f64>> Simulation<D, S> {
 
     /// Every cell rests by the scheme's own proof and the last step changed nothing: nothing ever will.
     pub fn at_rest(&self) -> bool {
-        self.step > 0 && self.quiet.iter().all(|quiet| *quiet)
+        self.step > 0 && self.restless.is_empty()
     }
     /// Largest speed along the bed.
     pub fn speed(&self) -> f64 {
-        self.tallies.iter().fold(0.0, |most, tally| tally.speed.max(most))
+        self.levels.iter().fold(0.0, |most, level| level.speed.max(most))
     }
-    /// Cells with a momentum, and cells with a depth.
-    pub fn counts(&self) -> (usize, usize) {
-        self.tallies.iter().fold((0, 0), |(moving, wet), tally| (moving + tally.moving, wet + tally.wet))
-    }
-    /// Kinetic energy per density.
-    pub fn energy(&self) -> f64 {
-        self.tallies.iter().map(|tally| tally.energy).sum::<f64>() * self.grid.measure()
-    }
-    /// Sums over all cells, compensated and in fixed order.
+    /// Sums over all cells, compensated and in fixed order; every cell is looked at.
     pub fn totals(&self) -> Totals {
+        let parts: Vec<Totals> = self.tiles.par_iter().map(|tile| self.totals_of(tile)).collect();
         let (mut volume, mut film) = (Sum::default(), Sum::default());
-        for tally in &self.tallies {
-            volume.add(tally.volume);
-            film.add(tally.film);
+        let mut totals = Totals { speed: self.speed(), ..Totals::default() };
+        for part in parts {
+            volume.add(part.volume);
+            film.add(part.film);
+            totals.energy += part.energy;
+            totals.wet += part.wet;
+            totals.moving += part.moving;
         }
-        let (moving, wet) = self.counts();
         let measure = self.grid.measure();
-        Totals {
-            volume: volume.value() * measure,
-            film: film.value() * measure,
-            speed: self.speed(),
-            energy: self.energy(),
-            wet,
-            moving,
+        totals.energy *= measure;
+        Totals { volume: volume.value() * measure, film: film.value() * measure, ..totals }
+    }
+
+    /// Sums over a tile, per cell measure.
+    fn totals_of(&self, tile: &Tile) -> Totals {
+        let mut totals = Totals::default();
+        for cell in self.cells_of(tile) {
+            let watch = self.scheme.watch(&cell);
+            totals.volume += watch.volume;
+            totals.film += watch.volume * watch.film;
+            totals.energy += watch.energy;
+            totals.wet += usize::from(watch.volume > 0.0);
+            totals.moving += usize::from(watch.square > 0.0);
         }
+        totals
+    }
+
+    /// The cells of a tile that lie inside the data.
+    fn cells_of(&self, tile: &Tile) -> impl Iterator<Item = Cell<S::State, S::Ground>> {
+        let Tile { columns, rows, .. } = *tile;
+        let places = (rows[0]..rows[1]).flat_map(move |j| {
+            let start = self.layout.place(columns[0] as isize, j as isize);
+            start..start + columns[1] - columns[0]
+        });
+        places
+            .map(|place| Cell { state: self.now.get(place), ground: self.grounds.get(place) })
+            .filter(|cell: &Cell<S::State, S::Ground>| !self.scheme.outside(&cell.ground))
     }
 
     /// Keep summary maps from now on, beginning with the state as it stands.
@@ -417,23 +483,22 @@ impl<const D: usize, S: Scheme<D, f64>> Simulation<D, S> {
         self.maps = Some(maps);
     }
 
-    /// Rates and counts of the state as it stands (needed once, before the first step or after a restart).
+    /// Rates and speeds of the state as it stands (needed once, before the first step or after a restart).
     fn survey(&mut self) {
-        let mut count = Count::new();
-        for (tile, tally) in self.tiles.iter().zip(&mut self.tallies) {
-            let width = tile.columns[1] - tile.columns[0];
-            for j in tile.rows[0]..tile.rows[1] {
-                for k in 0..width {
-                    let place = self.layout.place((tile.columns[0] + k) as isize, j as isize);
-                    let cell = Cell { state: self.now.get(place), ground: self.grounds.get(place) };
-                    let inside = !self.scheme.outside(&cell.ground);
-                    let rate = self.scheme.rate(&cell, &self.spacing);
-                    count.watch::<f64>(k, inside, rate, &self.scheme.watch(&cell));
-                }
-            }
+        let survey = |tile: &Tile| {
             // Nothing is known of the change before the next step.
-            *tally = Tally { change: [f64::INFINITY; MOST_PARTS], ..count.finish(0..width) };
-        }
+            let mut tally = Tally { change: [f64::INFINITY; MOST_PARTS], ..Tally::NONE };
+            let mut square = 0.0;
+            for cell in self.cells_of(tile) {
+                let rate = self.scheme.rate(&cell, &self.spacing);
+                tally.rate = if tally.rate < rate { rate } else { tally.rate };
+                square = self.scheme.watch(&cell).square.max(square);
+            }
+            tally.speed = square.sqrt();
+            tally
+        };
+        self.tallies = self.tiles.par_iter().map(survey).collect();
+        self.levels.fill(Level { stale: true, ..Level::default() });
         self.find_rate();
     }
 
@@ -516,47 +581,57 @@ impl<const D: usize, S: Scheme<D, f64>> Simulation<D, S> {
             sum.add(part);
         }
         let mut finite = true;
+        self.restless.clear();
         for &number in &self.awake {
             let tile = &self.tiles[number as usize];
             let cells = (tile.columns[1] - tile.columns[0]) * (tile.rows[1] - tile.rows[0]);
             self.updates += (cells * self.stages.len()) as u64;
-            finite &= self.tallies[number as usize].finite;
-            self.quiet[number as usize] = self.tallies[number as usize].quiet;
+            let tally = &self.tallies[number as usize];
+            finite &= tally.finite;
+            self.levels[number as usize / self.across].stale = true;
+            if !tally.quiet {
+                self.restless.push(number);
+            }
         }
         self.find_rate();
         if finite { Ok(dt) } else { Err(Failure::NotFinite { step: self.step, time: self.time }) }
     }
 
+    /// Find the largest rate and speed; rows in which all slept are as they were.
     fn find_rate(&mut self) {
+        for (level, tallies) in self.levels.iter_mut().zip(self.tallies.chunks(self.across)) {
+            if level.stale {
+                *level = Level::default();
+                for tally in tallies {
+                    level.rate = if level.rate < tally.rate { tally.rate } else { level.rate };
+                    level.speed = level.speed.max(tally.speed);
+                }
+            }
+        }
         self.rate =
-            self.tallies.iter().fold(0.0, |most, tally| if most < tally.rate { tally.rate } else { most });
+            self.levels.iter().fold(0.0, |most, level| if most < level.rate { level.rate } else { most });
     }
 
     /// Let every tile be computed in the next step; changes no result, only what it costs.
     pub fn wake_all(&mut self) {
-        self.quiet.fill(false);
+        self.restless.clear();
+        self.restless.extend(0..self.tiles.len() as u32);
     }
 
     /// Number the tiles that something can happen in, in rectangles: what is next to each other in memory is computed by one
-    /// thread, as long as there is enough for all of them.
+    /// thread, as long as there is enough for all of them. Costs nothing for tiles that sleep.
     fn wake(&mut self) {
+        for &number in &self.awake {
+            self.tallies[number as usize].out = Tally::NONE.out;
+        }
+        self.find_stirring();
+        let across = self.across;
+        let wide = across.min((STRIP - 2) / tile_size(D)[0]);
+        let high = (self.stirring.len() / (wide * 4 * rayon::current_num_threads())).clamp(1, MOST_TILES);
         self.awake.clear();
         self.runs.clear();
-        let (across, up) = (self.across, self.tiles.len() / self.across);
-        let mut stirring = 0;
-        for y in 0..up {
-            for x in 0..across {
-                let stirs = self.stirs(x, y, across, up);
-                self.waiting[y * across + x] = stirs;
-                stirring += usize::from(stirs);
-                if !stirs {
-                    self.tallies[y * across + x].out = Tally::NONE.out;
-                }
-            }
-        }
-        let wide = across.min((STRIP - 2) / tile_size(D)[0]);
-        let high = (stirring / (wide * 4 * rayon::current_num_threads())).clamp(1, MOST_TILES);
-        for number in 0..self.tiles.len() {
+        for &number in &self.stirring {
+            let number = number as usize;
             if !self.waiting[number] {
                 continue;
             }
@@ -580,19 +655,35 @@ impl<const D: usize, S: Scheme<D, f64>> Simulation<D, S> {
         }
     }
 
-    /// Can something happen in a tile?
-    fn stirs(&self, x: usize, y: usize, across: usize, up: usize) -> bool {
-        (y.saturating_sub(1)..(y + 2).min(up))
-            .any(|v| (x.saturating_sub(1)..(x + 2).min(across)).any(|u| !self.quiet[v * across + u]))
-            || self.wraps(x, y, across, up)
-    }
-
-    /// Tiles at a periodic end never sleep: their neighbours are at the other end.
-    fn wraps(&self, x: usize, y: usize, across: usize, up: usize) -> bool {
-        let periodic = |axis: usize| self.grid.boundary[axis][0] == Boundary::Periodic;
-        let at_end = |place: usize, count: usize| place == 0 || place + 1 == count;
-        let joined = (periodic(0) && at_end(x, across)) || (D > 1 && periodic(D - 1) && at_end(y, up));
-        joined && !self.quiet.iter().all(|quiet| *quiet)
+    /// Find the tiles that something can happen in, in order: the restless ones and those around them. They are marked in
+    /// `waiting`.
+    fn find_stirring(&mut self) {
+        let (across, up) = (self.across, self.tiles.len() / self.across);
+        self.stirring.clear();
+        let mut mark = |tile: usize| {
+            if !std::mem::replace(&mut self.waiting[tile], true) {
+                self.stirring.push(tile as u32);
+            }
+        };
+        for &number in &self.restless {
+            let (x, y) = (number as usize % across, number as usize / across);
+            for v in y.saturating_sub(1)..(y + 2).min(up) {
+                for u in x.saturating_sub(1)..(x + 2).min(across) {
+                    mark(v * across + u);
+                }
+            }
+        }
+        if !self.restless.is_empty() {
+            // Tiles at a periodic end never sleep: their neighbours are at the other end.
+            let periodic = |axis: usize| self.grid.boundary[axis][0] == Boundary::Periodic;
+            if periodic(0) {
+                (0..up).for_each(|y| [0, across - 1].into_iter().for_each(|x| mark(y * across + x)));
+            }
+            if D > 1 && periodic(D - 1) {
+                (0..across).for_each(|x| [0, up - 1].into_iter().for_each(|y| mark(y * across + x)));
+            }
+        }
+        self.stirring.sort_unstable();
     }
 
     /// The numbers that a restart needs: time, step, updates, and the books.
@@ -624,10 +715,24 @@ impl<const D: usize, S: Scheme<D, f64>> Simulation<D, S> {
             self.last_dt = clock[end + 2];
             self.now = arrays;
             self.next = self.now.clone();
-            self.quiet.fill(false);
+            self.wake_all();
             self.survey();
         }
         fits
+    }
+}
+
+impl<const D: usize, S: Scheme<D, f64>> Simulation<D, S> {
+    /// Give back what only steps need, for there will be none.
+    pub fn close(&mut self) {
+        self.next = Field::default();
+    }
+    /// The summary maps by name, x fastest, each copied when all else and those before it are given back.
+    pub fn into_maps(self) -> Vec<(&'static str, Vec<f64>)> {
+        let Simulation { maps, layout, now, next, grounds, .. } = self;
+        drop((now, next, grounds));
+        let named = maps.into_iter().flat_map(Maps::into_named);
+        named.map(|(name, map)| (name, layout.unpadded(&map))).collect()
     }
 }
 

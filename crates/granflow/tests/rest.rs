@@ -86,7 +86,7 @@ fn starts<const D: usize, S: Scheme<D, f64, State = Flow<D, f64>>>(name: &str, r
     let moved = alone(|| {
         (0..3).any(|_| {
             steps(run, 1);
-            run.counts().0 > 0 && run.speed() > 0.0
+            run.totals().moving > 0 && run.speed() > 0.0
         })
     });
     assert!(moved, "{name} stays");

@@ -395,7 +395,7 @@ impl<'a, const D: usize, L: Wide, T: Scheme<D, L>> Strip<'a, D, L, T> {
         let cell = Cell { state: unsafe { fresh.get(m as isize) }, ground: self.ground(place) };
         let live = L::from_bits(u64::from(live));
         let watch = self.scheme.watch(&cell);
-        count.watch::<L>(m, live, self.scheme.rate(&cell, &self.spacing), &watch);
+        count.watch::<L>(m, live, self.scheme.rate(&cell, &self.spacing), watch.square);
         if let Some(maps) = self.maps {
             // SAFETY: these are cells of ours.
             unsafe { self.mark(maps, place, live, &watch) };

@@ -173,29 +173,36 @@ impl Dataset<'_> {
         mut frames: Option<&mut Frames>,
         out: &mut dyn Write,
     ) -> io::Result<()> {
+        let precision = variable.precision;
         let terrain = self.terrain.filter(|terrain| terrain.len() == maps.length);
-        let (mut part, mut bytes) = (Vec::new(), Vec::new());
-        for instant in 0..maps.count {
-            let map = match (&variable.values, frames.as_deref_mut()) {
-                (Values::Static(map), _) => Cow::Borrowed(map.as_ref()),
-                (Values::Series(series), _) => Cow::Borrowed(series[instant].as_slice()),
+        let mut nothing = Vec::new();
+        precision.encode(&[f64::NAN], &mut nothing);
+        let mut bytes = Vec::new();
+        // Part by part: a map is a good share of what a run takes.
+        let part = |from: usize| from..(from + PART).min(maps.length);
+        let parts = || (0..maps.length).step_by(PART).map(part);
+        for (instant, part) in (0..maps.count).flat_map(|instant| parts().map(move |part| (instant, part))) {
+            bytes.clear();
+            match (&variable.values, frames.as_deref_mut()) {
+                (Values::Static(map), _) => precision.encode(&map[part.clone()], &mut bytes),
+                (Values::Series(series), _) => precision.encode(&series[instant][part.clone()], &mut bytes),
                 (Values::Stored(_), Some(frames)) => {
-                    Cow::Owned(frames.read(instant, maps.field).map_err(io::Error::other)?)
+                    let read = frames.read_bytes(instant, maps.field, part.clone(), &mut bytes);
+                    read.map_err(io::Error::other)?;
+                    // What is stored as it is wanted is not taken apart.
+                    if frames.precision() != precision {
+                        let values = frames.precision().decode(&bytes);
+                        bytes.clear();
+                        precision.encode(&values, &mut bytes);
+                    }
                 }
                 (Values::Stored(_), None) => unreachable!("plan() has refused this"),
-            };
-            // Part by part: a map may be a large share of what the whole run takes.
-            for (number, values) in map.chunks(PART).enumerate() {
-                part.clear();
-                part.extend_from_slice(values);
-                if let Some(terrain) = terrain {
-                    let outside = part.iter_mut().zip(&terrain[number * PART..]).filter(|(_, z)| z.is_nan());
-                    outside.for_each(|(value, _)| *value = f64::NAN);
-                }
-                bytes.clear();
-                variable.precision.encode(&part, &mut bytes);
-                out.write_all(&bytes)?;
             }
+            if let Some(terrain) = terrain {
+                let cells = bytes.chunks_exact_mut(precision.width()).zip(&terrain[part]);
+                cells.filter(|(_, z)| z.is_nan()).for_each(|(cell, _)| cell.copy_from_slice(&nothing));
+            }
+            out.write_all(&bytes)?;
         }
         Ok(())
     }

@@ -156,13 +156,21 @@ impl Raster {
     /// # Errors
     /// [`RasterError::Write`].
     pub fn write_geotiff(&self, path: &Path) -> Result<(), RasterError> {
+        self.write_values(path, |cell| self.values[cell])
+    }
+
+    /// As [`Raster::write_geotiff`], with another value in each of its cells.
+    ///
+    /// # Errors
+    /// [`RasterError::Write`].
+    pub fn write_values(&self, path: &Path, value: impl Fn(usize) -> f64) -> Result<(), RasterError> {
         let error = |reason: String| RasterError::Write { path: path.into(), reason };
-        let value = |k: usize| {
+        let stored = |k: usize| {
             let (row, column) = (self.rows - 1 - k / self.columns, k % self.columns);
-            let value = self.values[row * self.columns + column];
+            let value = value(row * self.columns + column);
             if value.is_nan() { NODATA } else { value as f32 }
         };
-        let values = (0..self.values.len()).map(value).collect();
+        let values = (0..self.rows * self.columns).map(stored).collect();
         let image =
             Array2::from_shape_vec((self.rows, self.columns), values).map_err(|e| error(e.to_string()))?;
         let [columns, rows] = [self.columns, self.rows].map(u32::try_from);

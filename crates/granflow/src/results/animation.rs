@@ -11,7 +11,6 @@ use crate::output;
 use crate::output::figures::{
     Axis, Colours, Curve, Figure, FigureError, Fill, HeatMap, Map, Overlay, Picture, Profiles, Style, short,
 };
-use crate::output::frames::Frames;
 use crate::output::whole_file;
 use rayon::prelude::*;
 use std::io;
@@ -25,7 +24,7 @@ const STAY: u16 = 3;
 
 /// Draw and write the film of a run.
 pub(super) fn write(run: &Finished, story: &Story) -> Result<PathBuf, FilesError> {
-    let mut frames = Frames::open(run.frames.path())?.0;
+    let mut frames = run.frames.again()?;
     let times = frames.times().to_vec();
     let names: &[&str] =
         if run.plane.as_table().is_some() { &["standing_layer", "rolling_layer"] } else { &["thickness"] };

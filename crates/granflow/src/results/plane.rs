@@ -155,13 +155,18 @@ impl Table {
 
     /// NaN stands in cells beside the table and at nodes that touch none of its cells.
     pub fn blank(&self, field: &mut [f64]) {
+        self.blank_part(field.len(), 0, field);
+    }
+
+    /// [`Table::blank`] of a part of a field of `length` numbers that begins with number `from`.
+    pub(crate) fn blank_part(&self, length: usize, from: usize, part: &mut [f64]) {
         let [columns, rows] = self.cells();
-        if field.len() == columns * rows {
-            let beside = field.iter_mut().zip(&self.inside).filter(|(_, inside)| !**inside);
+        if length == columns * rows {
+            let beside = part.iter_mut().zip(&self.inside[from..]).filter(|(_, inside)| !**inside);
             return beside.for_each(|(value, _)| *value = f64::NAN);
         }
         let wide = self.x_node.len();
-        for (k, value) in field.iter_mut().enumerate() {
+        for (k, value) in (from..).zip(part) {
             let (i, j) = (k % wide, k / wide);
             let below = if self.y_node.is_empty() { Some(0) } else { j.checked_sub(1) };
             let touches = [

@@ -2,7 +2,6 @@
 
 use super::{FilesError, Finished, Plane, Table, Under};
 use crate::output;
-use crate::output::frames::Frames;
 use crate::output::ledger::{Entry, Ledger};
 use crate::output::summary::Summary;
 use crate::raster::Raster;
@@ -66,7 +65,7 @@ impl<'r> Story<'r> {
     /// [`FilesError`] if the frames cannot be read.
     pub fn of(run: &'r Finished) -> Result<Story<'r>, FilesError> {
         let plane = run.plane.clone();
-        let mut frames = Frames::open(run.frames.path())?.0;
+        let mut frames = run.frames.again()?;
         let kept = instants(&plane, frames.times().len());
         let mut series = Vec::new();
         for &name in shown(&plane) {
