@@ -161,6 +161,14 @@ pub(crate) fn beside(path: &Path, extension: &str) -> PathBuf {
     if !lower.exists() && upper.exists() { upper } else { lower }
 }
 
+/// Turns rows that begin in the north into rows that begin in the south, in place.
+fn turn(values: &mut [f64], columns: usize) {
+    let mut rows = values.chunks_exact_mut(columns);
+    while let (Some(north), Some(south)) = (rows.next(), rows.next_back()) {
+        north.swap_with_slice(south);
+    }
+}
+
 /// The CRS of a file and the one that a case gives, where they agree.
 fn agreed(path: &Path, own: Option<Crs>, given: Option<&Crs>) -> Result<Option<Crs>, RasterError> {
     let (Some(own), Some(given)) = (&own, given) else { return Ok(own.or(given.cloned())) };

@@ -1,6 +1,6 @@
 //! GeoTIFF through the `geotiff-reader` and `geotiff-writer` crates.
 
-use super::{Crs, Raster, RasterError, agreed};
+use super::{Crs, Raster, RasterError, agreed, turn};
 use geotiff_reader::GeoTiffFile;
 use geotiff_writer::{Compression, GeoKeyValue, GeoTiffBuilder, GeoTransform, ModelType, Predictor};
 use ndarray::Array2;
@@ -49,14 +49,13 @@ pub(super) fn read(path: &Path, given: Option<&Crs>) -> Result<Raster, RasterErr
     let north_up = at.pixel_height < 0.0;
     let south = if north_up { at.origin_y - rows as f64 * height } else { at.origin_y };
     let crs = system(path, &file, given)?;
-    let values = samples(path, &file)?;
+    let mut values = samples(path, &file)?;
     if values.len() != columns * rows {
         return Err(error(&format!("{} values for {rows} rows of {columns}", values.len())));
     }
-    let values = match north_up {
-        true => values.chunks_exact(columns).rev().flatten().copied().collect(),
-        false => values,
-    };
+    if north_up {
+        turn(&mut values, columns);
+    }
     let raster = Raster { columns, rows, west: at.origin_x, south, cell, values, crs };
     if file.crs().model_type_enum() == ModelType::Geographic {
         return Err(RasterError::geographic(path, &raster));
