@@ -62,9 +62,9 @@ impl Raster {
         raster.checked(path)
     }
 
-    /// A raster of the same cells and CRS with other values.
+    /// A raster of the same cells and CRS with other values, or none.
     pub fn with_values(&self, values: Vec<f64>) -> Raster {
-        debug_assert_eq!(values.len(), self.values.len());
+        debug_assert!(values.is_empty() || values.len() == self.columns * self.rows);
         let Raster { columns, rows, west, south, cell, .. } = *self;
         Raster { columns, rows, west, south, cell, values, crs: self.crs.clone() }
     }

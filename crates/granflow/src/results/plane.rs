@@ -24,7 +24,8 @@ pub struct Plane {
 pub enum Under {
     /// A chute in the papers' scaling.
     Chute,
-    /// A mountain; lengths are metres, times seconds.
+    /// A mountain; lengths are metres, times seconds. While a run computes, its grounds hold the elevation and the raster has no
+    /// values: see [`Plane::with_bed`].
     Mountain(Arc<Raster>),
     /// The table of a growing sandpile, in the papers' scaling.
     Table(Table),
@@ -65,6 +66,15 @@ impl Plane {
     pub fn table(x: Vec<f64>, y: Vec<f64>, table: Table) -> Plane {
         debug_assert!(table.fits(&x, &y), "the parts of the table differ in length");
         Plane { x, y, under: Under::Table(table), release: Sparse::default() }
+    }
+
+    /// The same plane with the elevation of its cells, if it is a mountain.
+    #[must_use]
+    pub fn with_bed(mut self, elevation: impl FnOnce() -> Vec<f64>) -> Plane {
+        if let Under::Mountain(bed) = &mut self.under {
+            *bed = Arc::new(bed.with_values(elevation()));
+        }
+        self
     }
 
     /// The elevation model, on a mountain.

@@ -39,7 +39,7 @@ impl<const D: usize, S: Model<D>> Run<'_, '_, D, S> {
         Ending {
             case: self.work.case.clone(),
             directory: self.work.options.directory.clone(),
-            plane: self.plane.clone(),
+            plane: self.plane.clone().with_bed(|| S::elevation(&self.simulation)),
             maps,
             summary: self.summary(stop_reason),
         }
@@ -52,6 +52,7 @@ impl<const D: usize, S: Model<D>> Run<'_, '_, D, S> {
         let end = S::maps(&mut self.simulation, self.sand);
         let summary = self.summary(stop_reason);
         let Run { work, simulation, plane, writer, .. } = self;
+        let plane = plane.with_bed(|| S::elevation(&simulation));
         let mut maps = simulation.into_maps();
         maps.extend(end);
         let (case, directory) = (work.case.clone(), work.options.directory.clone());

@@ -20,6 +20,10 @@ pub(super) trait Model<const D: usize>: Scheme<D, f64> + Sized {
 
     /// As many numbers of a field of a frame as `values` holds, from number `from` on; fields as in [`Plane::series`].
     fn fill(simulation: &Simulation<D, Self>, plane: &Plane, field: usize, from: usize, values: &mut [f64]);
+    /// Elevation of the bed under every cell \[m\], where the grounds know it.
+    fn elevation(_simulation: &Simulation<D, Self>) -> Vec<f64> {
+        Vec::new()
+    }
     /// The maps of the end, beyond peaks and times.
     fn maps(simulation: &mut Simulation<D, Self>, sand: Option<&Sand<D>>) -> Maps;
     /// The figures of the summary that only this model has, and those that it has not.
@@ -35,21 +39,22 @@ where
 {
     const PEAKS: bool = true;
 
-    fn fill(simulation: &Simulation<D, S>, plane: &Plane, field: usize, from: usize, values: &mut [f64]) {
+    fn fill(simulation: &Simulation<D, S>, _plane: &Plane, field: usize, from: usize, values: &mut [f64]) {
         let columns = simulation.grid().cells[0];
         match field {
             0 => simulation.fill(columns, from, values, thickness),
             k if k <= D => simulation.fill(columns, from, values, |cell| cell.state.velocity()[k - 1]),
-            k if k == D + 1 => {
-                simulation.fill(columns, from, values, |cell| cell.ground.thickness(1.0) * thickness(cell));
-                let bed = plane.bed().unwrap_or_default().iter().skip(from);
-                values.iter_mut().zip(bed).for_each(|(value, bed)| *value += bed);
-            }
+            k if k == D + 1 => simulation.fill(columns, from, values, |cell| {
+                cell.ground.elevation() + cell.ground.thickness(1.0) * thickness(cell)
+            }),
             _ => {
                 simulation
                     .fill(columns, from, values, |cell| cell.ground.square(cell.state.velocity()).sqrt());
             }
         }
+    }
+    fn elevation(simulation: &Simulation<D, S>) -> Vec<f64> {
+        simulation.map(|cell| cell.ground.elevation())
     }
     fn maps(simulation: &mut Simulation<D, S>, _sand: Option<&Sand<D>>) -> Maps {
         let deposit = simulation.map(thickness);

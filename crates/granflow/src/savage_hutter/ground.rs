@@ -57,6 +57,8 @@ pub trait Bed<const D: usize, R: Real>: Parts<R> {
     fn thickness(&self, h: R) -> R;
     /// Rounding of a rise divided by dx: the uncertainty of the pull.
     fn rounding(&self, h: R, per: R) -> R;
+    /// Elevation b \[m\], not a number outside the data; a chute has none.
+    fn elevation(&self) -> R;
     /// Outside the data.
     fn outside(&self) -> R::Mask;
     /// The mirror image across a wall normal to `axis`.
@@ -171,6 +173,10 @@ impl<const D: usize, R: Real> Bed<D, R> for Chute<D, R> {
     #[inline(always)]
     fn rounding(&self, h: R, per: R) -> R {
         R::of(1e-14) * (self.beta * h * per + self.cos)
+    }
+    #[inline(always)]
+    fn elevation(&self) -> R {
+        R::of(f64::NAN)
     }
     #[inline(always)]
     fn outside(&self) -> R::Mask {
@@ -400,6 +406,10 @@ impl<const D: usize, R: Real> Bed<D, R> for Terrain<D, R> {
     fn rounding(&self, h: R, per: R) -> R {
         // 1e-14 g (|eta| + dx)/dx
         R::of(1e-14) * ((self.level.abs() + self.fall * self.cos * h) * per + self.fall / self.cos)
+    }
+    #[inline(always)]
+    fn elevation(&self) -> R {
+        R::select(self.outside(), R::of(f64::NAN), self.level)
     }
     #[inline(always)]
     fn outside(&self) -> R::Mask {

@@ -45,7 +45,7 @@ impl Mountain {
     /// simulation asks for its grounds.
     pub(super) fn simulate<V: Visit>(self, case: &Case, work: V) -> V::Output {
         let Mountain { terrain, release } = self;
-        let (bed, gravity) = (Arc::clone(&terrain.bed), case.gravity());
+        let (bed, gravity) = (&terrain.bed, case.gravity());
         let columns = bed.columns;
         let grid = Grid {
             cells: [bed.columns, bed.rows],
@@ -54,7 +54,9 @@ impl Mountain {
             boundary: [[Boundary::Nothing; 2]; 2],
         };
         let thickness = release.map(|cell, volume| volume * terrain.fit(bed.place(cell)).cosine());
-        let plane = Plane::of(&grid, Under::Mountain(bed), thickness);
+        // The grounds hold the elevation from here on.
+        let under = Under::Mountain(Arc::new(bed.with_values(Vec::new())));
+        let plane = Plane::of(&grid, under, thickness);
         let (law, film) = (law(case), case.scheme.film());
         let (scheme, stages) = match case.scheme.name {
             SchemeName::Balanced2 => (Balanced::second(law, film), SSP_RK2),
