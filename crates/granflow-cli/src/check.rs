@@ -84,12 +84,8 @@ pub fn check(case: &Case) -> Result<(), Failure> {
 fn avalanche(case: &Case) -> Result<Vec<(&'static str, String)>, Failure> {
     let scene = Scene::load(case)?;
     let mut lines = describe(case);
-    let mut bed = 0;
     match (&scene, &case.grid) {
-        (Scene::Mountain(mountain), _) => {
-            lines.extend(terrain_lines(&mountain.terrain));
-            bed = size_of_val(mountain.terrain.bed.values.as_slice());
-        }
+        (Scene::Mountain(mountain), _) => lines.extend(terrain_lines(&mountain.terrain)),
         (Scene::Chute { .. }, Some(grid)) => lines.extend(grid_lines(case, grid)?),
         _ => {}
     }
@@ -97,7 +93,7 @@ fn avalanche(case: &Case) -> Result<Vec<(&'static str, String)>, Failure> {
     lines.push(("mass", format!("{:.6} in {} cells", start.volume, start.wet)));
     let verdict = if start.margin > 1.0 { "it will start" } else { "it rests" };
     lines.push(("pull", format!("at most {:.6} of what friction holds: {verdict}", start.margin)));
-    lines.extend(effort(case, start.bytes + bed, start.rate));
+    lines.extend(effort(case, start.bytes, start.rate));
     Ok(lines)
 }
 
