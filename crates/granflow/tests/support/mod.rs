@@ -87,46 +87,25 @@ pub struct Surface<const D: usize> {
     pub bent: [[f64; D]; D],
 }
 
-/// The grounds of a grid over `bed`, which answers `None` outside the data; `bend` by central differences of
-/// beta and c^2 as [`Terrain`] documents, 0 beside the edge of the data.
+/// The grounds of a grid over `bed`, which answers `None` outside the data.
 pub fn terrain<const D: usize>(
     grid: &Grid<D>,
     bed: impl Fn([f64; D]) -> Option<Surface<D>>,
 ) -> Vec<Terrain<D, f64>> {
     let at = |centre: [f64; D]| match bed(centre) {
-        None => Terrain::nothing(),
+        None => Terrain::nothing(GRAVITY),
         Some(Surface { z, slope, bent }) => {
             let cos = 1.0 / (1.0 + slope.iter().map(|s| s * s).sum::<f64>()).sqrt();
             Terrain {
-                level: GRAVITY * z,
+                level: z,
                 slope,
                 cos,
-                fall: GRAVITY * cos,
                 curvature: bent.map(|row| row.map(|b| cos * b)),
-                bend: [0.0; D],
+                gravity: GRAVITY,
             }
         }
     };
-    (0..grid.count())
-        .map(|number| {
-            let centre = grid.centre(grid.index(number));
-            let mut here = at(centre);
-            for axis in 0..D {
-                let dx = grid.size[axis];
-                let (mut lo, mut hi) = (centre, centre);
-                lo[axis] -= dx;
-                hi[axis] += dx;
-                let (lo, hi) = (at(lo), at(hi));
-                if here.cos > 0.0 && lo.cos > 0.0 && hi.cos > 0.0 {
-                    let tilt = 1.0 - (here.cos * here.slope[axis]).powi(2);
-                    let beta = Bed::<D, f64>::beta(&hi, axis) - Bed::<D, f64>::beta(&lo, axis);
-                    here.bend[axis] =
-                        beta / (4.0 * dx) - GRAVITY * tilt * (hi.cos.powi(2) - lo.cos.powi(2)) / (2.0 * dx);
-                }
-            }
-            here
-        })
-        .collect()
+    (0..grid.count()).map(|number| at(grid.centre(grid.index(number)))).collect()
 }
 
 /// A run of the default scheme over given grounds, one for each cell.
