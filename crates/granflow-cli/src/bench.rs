@@ -22,8 +22,9 @@ const CELLS: [usize; 2] = [100_000, 2000];
 const LEAST_CELLS: usize = 8;
 /// More threads than this only wait for each other.
 const MOST_THREADS: usize = 1024;
-/// More than any setup takes for a cell while it is set up (a terrain: elevation, derivatives, ground, three states).
-const BYTES_PER_CELL: f64 = 320.0;
+/// No setup takes more for a cell: on terrain ten numbers of the ground and the elevation they come from; the state now,
+/// next, at the start, and once more while a run begins anew, three numbers each; and what is kept of a tile.
+const BYTES_PER_CELL: f64 = (8 * (10 + 1 + 4 * 3) + 2) as f64;
 
 /// What the command line says.
 #[derive(Debug, Clone, clap::Args)]

@@ -2,6 +2,7 @@
 
 use granflow::case::{Axis, Case, Frames, Grid, Model, SchemeName, Side, Slope, Stepping, Until};
 use granflow::hadeler_kuttler::scheme::HadelerKuttler;
+use granflow::results::Plane;
 use granflow::savage_hutter::Flow;
 use granflow::savage_hutter::ground::Bed;
 use granflow::scheme::Scheme;
@@ -16,10 +17,6 @@ mod sandpile;
 /// A fast avalanche \[m/s\].
 const FAST: f64 = 30.0;
 
-/// Bytes a cell takes while it is computed: thickness and momentum at two times and in one stage, ground and maps, 8
-/// bytes each.
-const BYTES_PER_CELL: usize = 8 * 16;
-
 /// What the start of a run looks like.
 struct Start {
     /// Largest sum over the axes of (|u| + sqrt(2 beta h))/dx: the Courant number of a step is dt times this.
@@ -30,6 +27,21 @@ struct Start {
     volume: f64,
     /// Cells with a depth.
     wet: usize,
+    /// Memory that the run will take.
+    bytes: usize,
+}
+
+impl Start {
+    fn of<const D: usize, S: Scheme<D, f64>>(simulation: &mut Simulation<D, S>, maps: bool) -> Start {
+        let totals = simulation.totals();
+        Start {
+            rate: simulation.rate(),
+            margin: simulation.margins().into_iter().fold(0.0, f64::max),
+            volume: totals.volume,
+            wet: totals.wet,
+            bytes: simulation.grid().count() * Simulation::<D, S>::bytes_per_cell(maps),
+        }
+    }
 }
 
 /// Looks at the simulation before its first step.
@@ -37,14 +49,12 @@ struct Look;
 
 impl Visit for Look {
     type Output = Start;
-    fn visit<const D: usize, S>(self, mut simulation: Simulation<D, S>) -> Start
+    fn visit<const D: usize, S>(self, _plane: Plane, mut simulation: Simulation<D, S>) -> Start
     where
         S: Scheme<D, f64, State = Flow<D, f64>>,
         S::Ground: Bed<D, f64>,
     {
-        let totals = simulation.totals();
-        let margin = simulation.margins().into_iter().fold(0.0, f64::max);
-        Start { rate: simulation.rate(), margin, volume: totals.volume, wet: totals.wet }
+        Start::of(&mut simulation, true)
     }
 
     fn visit_sand<const D: usize>(
@@ -52,9 +62,7 @@ impl Visit for Look {
         _sand: &Sand<D>,
         mut simulation: Simulation<D, HadelerKuttler>,
     ) -> Start {
-        let totals = simulation.totals();
-        let margin = simulation.margins().into_iter().fold(0.0, f64::max);
-        Start { rate: simulation.rate(), margin, volume: totals.volume, wet: totals.wet }
+        Start::of(&mut simulation, false)
     }
 }
 
@@ -76,30 +84,26 @@ pub fn check(case: &Case) -> Result<(), Failure> {
 fn avalanche(case: &Case) -> Result<Vec<(&'static str, String)>, Failure> {
     let scene = Scene::load(case)?;
     let mut lines = describe(case);
-    let cells = match (&scene, &case.grid) {
-        (Scene::Mountain { terrain, .. }, _) => {
-            lines.extend(terrain_lines(terrain));
-            terrain.bed.values.len()
+    let mut bed = 0;
+    match (&scene, &case.grid) {
+        (Scene::Mountain(mountain), _) => {
+            lines.extend(terrain_lines(&mountain.terrain));
+            bed = size_of_val(mountain.terrain.bed.values.as_slice());
         }
-        (Scene::Chute { cells, .. }, Some(grid)) => {
-            lines.extend(grid_lines(case, grid)?);
-            cells[0] * cells[1]
-        }
-        (Scene::Line(sand), _) => sand.plan.rolling.len(),
-        (Scene::Table(sand), _) => sand.plan.rolling.len(),
-        (Scene::Chute { .. }, None) => 0,
-    };
+        (Scene::Chute { .. }, Some(grid)) => lines.extend(grid_lines(case, grid)?),
+        _ => {}
+    }
     let start = scene.simulate(case, Look);
     lines.push(("mass", format!("{:.6} in {} cells", start.volume, start.wet)));
     let verdict = if start.margin > 1.0 { "it will start" } else { "it rests" };
     lines.push(("pull", format!("at most {:.6} of what friction holds: {verdict}", start.margin)));
-    lines.extend(effort(case, cells, start.rate));
+    lines.extend(effort(case, start.bytes + bed, start.rate));
     Ok(lines)
 }
 
 /// Memory and steps, from the Courant number of a step of length 1 at the start.
-fn effort(case: &Case, cells: usize, rate: f64) -> Vec<(&'static str, String)> {
-    let mut lines = vec![("memory", memory(cells)), ("steps", steps(case, rate))];
+fn effort(case: &Case, bytes: usize, rate: f64) -> Vec<(&'static str, String)> {
+    let mut lines = vec![("memory", memory(bytes)), ("steps", steps(case, rate))];
     if let Stepping::Fixed(step) = case.scheme.stepping() {
         let (courant, limit) = (step * rate, case.scheme.name.courant_limit());
         let verdict = if courant <= limit { "in order" } else { "too large, the scheme is not stable there" };
@@ -116,7 +120,7 @@ fn terrain_lines(terrain: &Terrain) -> Vec<(&'static str, String)> {
     let (low, high) = bed.range().unwrap_or_default();
     // Where the bed is convex, N = g c + c w^T (D^2 b) w vanishes at |w|^2 = g/|smallest eigenvalue of D^2 b|.
     let convex = |h: &[f64; 3]| 0.5 * (h[0] + h[2]) - (0.25 * (h[0] - h[2]).powi(2) + h[1] * h[1]).sqrt();
-    let flies = terrain.hessian.iter().filter(|h| -convex(h) * FAST * FAST > 9.81).count();
+    let flies = terrain.count(|fit| -convex(&fit.hessian) * FAST * FAST > 9.81);
     let valid = (bed.values.len() - nodata).max(1);
     vec![
         (
@@ -244,8 +248,8 @@ fn range(values: &[f64]) -> (f64, f64) {
         .fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), value| (low.min(*value), high.max(*value)))
 }
 
-fn memory(cells: usize) -> String {
-    let bytes = cells as f64 * BYTES_PER_CELL as f64;
+fn memory(bytes: usize) -> String {
+    let bytes = bytes as f64;
     let (value, unit) = if bytes < 1e6 {
         (bytes / 1e3, "kB")
     } else if bytes < 1e9 {

@@ -91,7 +91,7 @@ impl From<RunError> for Failure {
     fn from(error: RunError) -> Self {
         match error {
             RunError::Setup(error) => error.into(),
-            RunError::Output(error) => Self::File(error.to_string()),
+            RunError::Output(_) | RunError::Files(_) => Self::File(error.to_string()),
             RunError::Computation { .. } => Self::Computation(error.to_string()),
             RunError::Threads(_) => Self::usage(error.to_string(), "try a smaller --threads"),
             RunError::Resume { .. } => Self::File(error.to_string()),

@@ -72,7 +72,6 @@ pub fn compute(case: &Case, options: &RunOptions) -> Result<Finished, Failure> {
     let finished = run::run(case, &options, stop, &mut report);
     progress.finish();
     let finished = finished?;
-    finished.write_files()?;
     let summary = &finished.summary;
     if summary.film_share() > FILM_SHARE {
         eprintln!(

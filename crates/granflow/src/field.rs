@@ -4,6 +4,7 @@ use crate::backend::Sheet;
 use crate::grid::Layout;
 use crate::scheme::Parts;
 use rayon::prelude::*;
+use std::marker::PhantomData;
 
 /// One padded array per number of a cell value.
 #[derive(Debug, Default)]
@@ -35,11 +36,7 @@ impl Field {
         Field { singles: vec![Vec::new(); parts.len()], parts }
     }
     /// The value of every cell, without the ghosts, by its column and row.
-    pub(crate) fn fill<P: Parts<f64>>(
-        &mut self,
-        layout: &Layout,
-        value: impl Fn(usize, usize) -> P + Sync,
-    ) {
+    pub(crate) fn fill<P: Parts<f64>>(&mut self, layout: &Layout, value: impl Fn(usize, usize) -> P + Sync) {
         if P::SHARED != 0 {
             value(0, 0).scatter(|k, part| {
                 if has(P::SHARED, k) {
@@ -75,6 +72,17 @@ impl Field {
                 self.parts[k][if has(P::SHARED, k) { 0 } else { place }]
             }
         })
+    }
+    /// The values at `start` and the next places, opened for reading: one check for all numbers of a cell.
+    ///
+    /// # Panics
+    /// If they reach beyond the arrays.
+    pub fn row<P: Parts<f64>>(&self, start: usize, len: usize) -> Row<'_, P> {
+        for k in 0..P::COUNT {
+            let there = if has(P::SINGLE, k) { self.singles[k].len() } else { self.parts[k].len() };
+            assert!(has(P::SHARED, k) || start + len <= there, "cells beyond their field");
+        }
+        Row { starts: self.starts::<P>(), start, len, owner: PhantomData }
     }
     /// Set the value at `place`, but for the parts that are the same in all cells.
     #[inline(always)]
@@ -113,7 +121,10 @@ impl Field {
 
 impl Clone for Field {
     fn clone(&self) -> Self {
-        Field { parts: self.parts.iter().map(|part| copy(part)).collect(), singles: self.singles.iter().map(|part| copy(part)).collect() }
+        Field {
+            parts: self.parts.iter().map(|part| copy(part)).collect(),
+            singles: self.singles.iter().map(|part| copy(part)).collect(),
+        }
     }
 }
 
@@ -142,3 +153,39 @@ pub(crate) fn zeros<T: Copy + Default>(len: usize) -> Vec<T> {
 
 /// Most numbers that a cell value has.
 pub(crate) const MOST: usize = 16;
+
+/// Neighbouring places of a field, opened for reading.
+#[derive(Clone, Copy)]
+pub struct Row<'a, P> {
+    starts: [*const u8; MOST],
+    start: usize,
+    len: usize,
+    owner: PhantomData<(&'a Field, P)>,
+}
+
+impl<P: Parts<f64>> Row<'_, P> {
+    /// The value `i` places behind the first.
+    #[inline(always)]
+    pub fn get(&self, i: usize) -> P {
+        assert!(i < self.len, "a cell beyond its row");
+        let place = self.start + i;
+        // SAFETY: `Field::row` found the places in all arrays.
+        P::gather(|k| unsafe { read::<P>(self.starts[k], k, place) })
+    }
+}
+
+/// Part `k` at `place` of an array that begins at `start`.
+///
+/// # Safety
+/// The array holds the part of a `P`, and has the place.
+#[inline(always)]
+unsafe fn read<P: Parts<f64>>(start: *const u8, k: usize, place: usize) -> f64 {
+    // SAFETY: as the caller promises.
+    unsafe {
+        if has(P::SINGLE, k) {
+            f64::from(*start.cast::<f32>().add(place))
+        } else {
+            *start.cast::<f64>().add(if has(P::SHARED, k) { 0 } else { place })
+        }
+    }
+}

@@ -18,6 +18,8 @@ pub struct Maps {
 }
 
 impl Maps {
+    /// Of all of them.
+    pub(crate) const BYTES_PER_CELL: usize = 4 * size_of::<f32>();
     /// Nothing seen yet.
     pub fn new(layout: &Layout) -> Maps {
         Maps {
@@ -34,6 +36,16 @@ impl Maps {
             ("peak_speed", &self.peak_speed),
             ("arrival_time", &self.arrival_time),
             ("stopping_time", &self.stopping_time),
+        ]
+        .into_iter()
+    }
+    /// As [`Maps::named`], to keep.
+    pub fn into_named(self) -> impl Iterator<Item = (&'static str, Vec<f32>)> {
+        [
+            ("peak_thickness", self.peak_thickness),
+            ("peak_speed", self.peak_speed),
+            ("arrival_time", self.arrival_time),
+            ("stopping_time", self.stopping_time),
         ]
         .into_iter()
     }

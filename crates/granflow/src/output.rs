@@ -134,6 +134,37 @@ fn sync_folder(folder: &Path) -> io::Result<()> {
     if cfg!(unix) { File::open(folder)?.sync_all() } else { Ok(()) }
 }
 
+/// A sink that keeps length and checksum of what passes.
+struct Summed<'a> {
+    out: &'a mut dyn Write,
+    crc: crc32fast::Hasher,
+    bytes: u64,
+}
+
+impl<'a> Summed<'a> {
+    fn new(out: &'a mut dyn Write) -> Self {
+        Self { out, crc: crc32fast::Hasher::new(), bytes: 0 }
+    }
+
+    /// Ends with the CRC-32 of all that passed.
+    fn finish(self) -> io::Result<()> {
+        self.out.write_all(&self.crc.finalize().to_le_bytes())
+    }
+}
+
+impl Write for Summed<'_> {
+    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+        let written = self.out.write(bytes)?;
+        self.crc.update(&bytes[..written]);
+        self.bytes += written as u64;
+        Ok(written)
+    }
+
+    fn flush(&mut self) -> io::Result<()> {
+        self.out.flush()
+    }
+}
+
 /// Removes the temporary files that a killed run left in `folder` and returns how many there were.
 ///
 /// # Errors
@@ -180,12 +211,22 @@ impl Precision {
     }
 
     /// Appends `values` to `bytes`, little endian, rounded to this precision.
-    fn encode(self, values: &[f64], bytes: &mut Vec<u8>) {
-        bytes.reserve(values.len() * self.width());
+    pub(crate) fn encode(self, values: &[f64], bytes: &mut Vec<u8>) {
+        let start = bytes.len();
+        bytes.resize(start + values.len() * self.width(), 0);
+        let room = &mut bytes[start..];
         match self {
             #[expect(clippy::cast_possible_truncation, reason = "rounding to f32 is what was asked for")]
-            Self::F32 => values.iter().for_each(|&v| bytes.extend_from_slice(&(v as f32).to_le_bytes())),
-            Self::F64 => values.iter().for_each(|v| bytes.extend_from_slice(&v.to_le_bytes())),
+            Self::F32 => {
+                room.as_chunks_mut()
+                    .0
+                    .iter_mut()
+                    .zip(values)
+                    .for_each(|(b, &v)| *b = (v as f32).to_le_bytes());
+            }
+            Self::F64 => {
+                room.as_chunks_mut().0.iter_mut().zip(values).for_each(|(b, v)| *b = v.to_le_bytes())
+            }
         }
     }
 

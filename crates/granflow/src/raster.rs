@@ -98,6 +98,11 @@ impl Raster {
         self.values[row * self.columns + column]
     }
 
+    /// Column and row of the cell at an index of [`Raster::values`].
+    pub fn place(&self, index: usize) -> [usize; 2] {
+        [index % self.columns, index / self.columns]
+    }
+
     /// Smallest and largest value, `None` where all is nodata.
     pub fn range(&self) -> Option<(f64, f64)> {
         let valid = self.values.iter().filter(|value| !value.is_nan());
@@ -154,6 +159,14 @@ impl Raster {
 pub(crate) fn beside(path: &Path, extension: &str) -> PathBuf {
     let [lower, upper] = [extension.to_string(), extension.to_uppercase()].map(|e| path.with_extension(e));
     if !lower.exists() && upper.exists() { upper } else { lower }
+}
+
+/// Turns rows that begin in the north into rows that begin in the south, in place.
+fn turn(values: &mut [f64], columns: usize) {
+    let mut rows = values.chunks_exact_mut(columns);
+    while let (Some(north), Some(south)) = (rows.next(), rows.next_back()) {
+        north.swap_with_slice(south);
+    }
 }
 
 /// The CRS of a file and the one that a case gives, where they agree.

@@ -2,13 +2,16 @@
 
 mod coverage;
 mod error;
+mod sparse;
 mod vector;
 
 pub use error::ReleaseError;
+pub use sparse::Sparse;
 
 use crate::raster::Raster;
 use crate::terrain::Terrain;
 use geo::{Area, BooleanOps, BoundingRect, Intersects, MultiPolygon, Polygon, Validation, unary_union};
+use std::collections::BTreeMap;
 use std::path::Path;
 use vector::{Feature, Layer};
 
@@ -38,14 +41,10 @@ const LOST: f64 = 1e-6;
 ///
 /// H = h / c with c = 1 / sqrt(1 + |grad b|^2) where h is normal to the bed; H = h where it is vertical, for then it
 /// is the height of the column itself.
-///
-/// # Panics
-/// When `thickness` has not one value per cell.
-pub fn per_plan_area(thickness: &[f64], terrain: &Terrain, measured: Measured) -> Vec<f64> {
-    assert_eq!(thickness.len(), terrain.gradient.len());
+pub fn per_plan_area(thickness: Sparse, terrain: &Terrain, measured: Measured) -> Sparse {
     match measured {
-        Measured::Vertical => thickness.to_vec(),
-        Measured::Normal => thickness.iter().enumerate().map(|(k, h)| h / terrain.cosine(k)).collect(),
+        Measured::Vertical => thickness,
+        Measured::Normal => thickness.map(|k, h| h / terrain.fit(terrain.bed.place(k)).cosine()),
     }
 }
 
@@ -59,7 +58,7 @@ pub fn per_plan_area(thickness: &[f64], terrain: &Terrain, measured: Measured) -
 /// Every [`ReleaseError`] but [`ReleaseError::Raster`]: unreadable files, other shapes than polygons, rings that
 /// cross themselves, a missing attribute, a thickness that is negative or no number, a CRS that contradicts that
 /// of `template`, and polygons beyond the edge of `template` or on its nodata cells.
-pub fn polygons(path: &Path, thickness: &Thickness, template: &Raster) -> Result<Vec<f64>, ReleaseError> {
+pub fn polygons(path: &Path, thickness: &Thickness, template: &Raster) -> Result<Sparse, ReleaseError> {
     let layer = Layer::read(path)?;
     if let (Some(own), Some(terrain)) = (&layer.crs, &template.crs)
         && let Some(proof) = own.contradiction(terrain)
@@ -84,25 +83,27 @@ pub fn polygons(path: &Path, thickness: &Thickness, template: &Raster) -> Result
         return Err(ReleaseError::Nothing { path: path.into(), problem: "it holds no polygon" });
     };
     areas.sort_by(|(_, a), (_, b)| b.total_cmp(a));
-    let mut height = vec![0.0; template.values.len()];
+    let mut height: BTreeMap<usize, f64> = BTreeMap::new();
     let (mut area, mut covered) = (0.0, 0.0);
     for (k, (polygon, thickness)) in areas.iter().enumerate() {
         area += polygon.unsigned_area();
         for (cell, share) in coverage::shares(polygon, template) {
             if !template.values[cell].is_nan() {
                 covered += share * template.cell * template.cell;
-                height[cell] += thickness * share;
+                *height.entry(cell).or_default() += thickness * share;
             }
         }
         for common in overlap(polygon, &areas[..k]) {
             for (cell, share) in coverage::shares(&common, template) {
-                height[cell] = (height[cell] - thickness * share).max(0.0);
+                if let Some(height) = height.get_mut(&cell) {
+                    *height = (*height - thickness * share).max(0.0);
+                }
             }
         }
     }
     let bounds = [extent.min().x, extent.min().y, extent.max().x, extent.max().y];
-    let height = kept(path, height, template, bounds, 1.0 - covered / area)?;
-    match height.iter().any(|h| *h > 0.0) {
+    let height = kept(path, height.into_iter().collect(), template, bounds, 1.0 - covered / area)?;
+    match height.most() > 0.0 {
         true => Ok(height),
         false => Err(ReleaseError::Nothing { path: path.into(), problem: "the thickness is 0 everywhere" }),
     }
@@ -134,7 +135,7 @@ pub(crate) fn outlines(path: &Path) -> Result<Vec<Polygon>, ReleaseError> {
 /// # Errors
 /// [`ReleaseError::Raster`] with what [`Raster::read`] says, a negative thickness with its place, a raster without
 /// any material, and material beyond the edge of `template` or on its nodata cells.
-pub fn raster(path: &Path, template: &Raster) -> Result<Vec<f64>, ReleaseError> {
+pub fn raster(path: &Path, template: &Raster) -> Result<Sparse, ReleaseError> {
     let given = Raster::read_in(path, template.crs.as_ref())?;
     if let Some(k) = given.values.iter().position(|h| *h < 0.0) {
         let (x, y) = (given.x(k % given.columns), given.y(k / given.columns));
@@ -145,15 +146,15 @@ pub fn raster(path: &Path, template: &Raster) -> Result<Vec<f64>, ReleaseError> 
         return Err(ReleaseError::Nothing { path: path.into(), problem: "the thickness is 0 everywhere" });
     }
     let place = |r: &Raster| (r.columns, r.rows, r.west, r.south, r.cell);
-    let thickness: Vec<f64> = if place(&given) == place(template) {
-        given.values.iter().map(|h| if h.is_nan() { 0.0 } else { *h }).collect()
+    let on_values = |(h, b): (f64, &f64)| if h.is_nan() || b.is_nan() { 0.0 } else { h };
+    let height = if place(&given) == place(template) {
+        Sparse::of(given.values.iter().copied().zip(&template.values).map(on_values))
     } else {
         let cell = template.cell * template.cell;
-        given.overlap(template).1.into_iter().map(|volume| volume / cell).collect()
+        let thickness = given.overlap(template).map(|(_, volume)| volume / cell);
+        Sparse::of(thickness.zip(&template.values).map(on_values))
     };
-    let height = thickness.into_iter().zip(&template.values).map(|(h, b)| if b.is_nan() { 0.0 } else { h });
-    let height: Vec<f64> = height.collect();
-    let arrived = height.iter().sum::<f64>() * template.cell * template.cell;
+    let arrived = height.iter().map(|(_, h)| h).sum::<f64>() * template.cell * template.cell;
     let bounds = [given.west, given.south, given.east(), given.north()];
     kept(path, height, template, bounds, 1.0 - arrived / total)
 }
@@ -163,7 +164,7 @@ pub fn raster(path: &Path, template: &Raster) -> Result<Vec<f64>, ReleaseError> 
 ///
 /// # Errors
 /// [`ReleaseError::Cap`] where the height or radius is not above 0, or no cell with a value lies under the cap.
-pub fn cap(height: f64, centre: [f64; 2], radius: f64, template: &Raster) -> Result<Vec<f64>, ReleaseError> {
+pub fn cap(height: f64, centre: [f64; 2], radius: f64, template: &Raster) -> Result<Sparse, ReleaseError> {
     let error = |problem: String| ReleaseError::Cap { problem };
     for (name, value) in [("height", height), ("radius", radius)] {
         if !(value > 0.0 && value.is_finite()) {
@@ -176,8 +177,8 @@ pub fn cap(height: f64, centre: [f64; 2], radius: f64, template: &Raster) -> Res
         let inside = 1.0 - (x * x + y * y) / (radius * radius);
         if template.values[k].is_nan() { 0.0 } else { height * inside.max(0.0) }
     };
-    let thickness: Vec<f64> = (0..template.values.len()).map(at).collect();
-    if thickness.iter().all(|h| *h == 0.0) {
+    let thickness = Sparse::of((0..template.values.len()).map(at));
+    if thickness.most() == 0.0 {
         let (west, south) = (template.west, template.south);
         return Err(error(format!(
             "no cell with a value lies within {radius} m of its centre ({}, {}); the terrain extends over x {west} to \
@@ -194,11 +195,11 @@ pub fn cap(height: f64, centre: [f64; 2], radius: f64, template: &Raster) -> Res
 /// `height` where no more than [`LOST`] of a release is lost, else the error that says where it and the terrain lie.
 fn kept(
     path: &Path,
-    height: Vec<f64>,
+    height: Sparse,
     template: &Raster,
     bounds: [f64; 4],
     lost: f64,
-) -> Result<Vec<f64>, ReleaseError> {
+) -> Result<Sparse, ReleaseError> {
     if lost <= LOST { Ok(height) } else { Err(ReleaseError::outside(path, bounds, template, lost)) }
 }
 

@@ -24,6 +24,7 @@ use crate::output::ledger::Entry;
 use crate::output::netcdf::{Axis, Crs, Dataset, Values, Variable, history};
 use crate::output::summary::Summary;
 use crate::output::{self, Precision};
+use std::borrow::Cow;
 use std::path::{Path, PathBuf};
 use std::time::SystemTime;
 
@@ -135,10 +136,10 @@ impl Finished {
     ///
     /// # Errors
     /// [`output::Error`] naming the file.
-    pub fn write_result(&self, command: &str) -> Result<(), output::Error> {
+    pub fn write_result<'a>(&'a self, command: &str) -> Result<(), output::Error> {
         let terrain = self.plane.is_terrain();
         let (length, time) = if terrain { ("m", "s") } else { ("1", "1") };
-        let mut frames = Frames::open(self.frames.path())?.0;
+        let mut frames = self.frames.again()?;
         let mut axes = vec![Axis::time(frames.times().to_vec(), time)];
         let (x, y) = (&self.plane.x, &self.plane.y);
         let mut along = |axis, name: &str, places: &[f64]| {
@@ -153,7 +154,7 @@ impl Finished {
             along("X", "x_node", &table.x_node);
         }
         let precision = frames.precision();
-        let variable = |name: &str, at: [&str; 2], series: bool, precision: Precision, values: Values| {
+        let variable = |name: &str, at: [&str; 2], series: bool, precision: Precision, values: Values<'a>| {
             let (_, long_name, scaled, si) =
                 QUANTITIES.iter().find(|(known, ..)| *known == name).copied().unwrap_or(("", "", "1", "1"));
             let space = if y.is_empty() { &at[1..] } else { &at };
@@ -170,27 +171,27 @@ impl Finished {
         };
         let cells = x.len() * y.len().max(1);
         let place = |length: usize| if length == cells { ["y", "x"] } else { ["y_node", "x_node"] };
-        let mut variables: Vec<Variable> = Vec::new();
+        let mut variables = Vec::new();
         for field in frames.fields() {
             let stored = Values::Stored(field.name.clone());
             variables.push(variable(&field.name, place(field.length), true, precision, stored));
         }
-        let mut fixed = |name: &str, at: [&str; 2], precision: Precision, map: &[f64]| {
+        let mut fixed = |name: &str, at: [&str; 2], precision: Precision, map: Cow<'a, [f64]>| {
             if !map.is_empty() {
-                variables.push(variable(name, at, false, precision, Values::Static(map.to_vec())));
+                variables.push(variable(name, at, false, precision, Values::Static(map)));
             }
         };
         if let Some(bed) = self.plane.bed() {
-            fixed("bed", ["y", "x"], Precision::F64, bed);
+            fixed("bed", ["y", "x"], Precision::F64, bed.into());
         }
         if let Some(table) = self.plane.as_table() {
-            let faces = |walls: &[bool]| walls.iter().map(|&wall| f64::from(wall)).collect::<Vec<f64>>();
-            fixed("table_height", ["y_node", "x_node"], Precision::F64, &table.height);
-            fixed("wall_x", ["y", "x_node"], precision, &faces(&table.wall_x));
-            fixed("wall_y", ["y_node", "x"], precision, &faces(&table.wall_y));
+            let faces = |walls: &[bool]| walls.iter().map(|&wall| f64::from(wall)).collect();
+            fixed("table_height", ["y_node", "x_node"], Precision::F64, table.height.as_slice().into());
+            fixed("wall_x", ["y", "x_node"], precision, faces(&table.wall_x));
+            fixed("wall_y", ["y_node", "x"], precision, faces(&table.wall_y));
         }
         for (name, map) in &self.maps {
-            fixed(name, place(map.len()), precision, map);
+            fixed(name, place(map.len()), precision, map.as_slice().into());
         }
         let crs = self.plane.mountain().and_then(|bed| bed.crs.as_ref());
         let dataset = Dataset {
@@ -205,7 +206,7 @@ impl Finished {
             axes,
             variables,
             crs: crs.map(|crs| Crs { epsg: crs.epsg, wkt: crs.wkt.clone() }),
-            outside: self.plane.bed().map(|bed| bed.iter().map(|z| z.is_nan()).collect()),
+            terrain: self.plane.bed(),
         };
         dataset.write(&self.result(), Some(&mut frames))
     }
@@ -227,8 +228,8 @@ impl Finished {
 fn runout(plane: &Plane, pressure: &[f64]) -> Option<(f64, f64)> {
     let bed = plane.bed()?;
     let columns = plane.x.len();
-    let top =
-        (0..bed.len()).filter(|&k| plane.release[k] > 0.0).max_by(|&a, &b| bed[a].total_cmp(&bed[b]))?;
+    let released = plane.release.iter().filter(|(_, thickness)| *thickness > 0.0).map(|(cell, _)| cell);
+    let top = released.max_by(|&a, &b| bed[a].total_cmp(&bed[b]))?;
     let from = |k: usize| {
         let (dx, dy) =
             (plane.x[k % columns] - plane.x[top % columns], plane.y[k / columns] - plane.y[top / columns]);

@@ -347,12 +347,44 @@ impl<const D: usize, S: Scheme<D, f64>> Simulation<D, S> {
             let around = Around { simulation: self, place: self.place(index) };
             if outside { 0.0 } else { self.scheme.margin(&around) }
         };
-        (0..self.grid.count()).map(margin).collect()
+        (0..self.grid.count()).into_par_iter().map(margin).collect()
     }
-    /// A value of every cell, x fastest.
+    /// What is made of every cell, x fastest.
     pub fn collect<T>(&self, value: impl Fn(&Cell<S::State, S::Ground>) -> T) -> Vec<T> {
         (0..self.grid.count()).map(|number| value(&self.cell(self.grid.index(number)))).collect()
     }
+    /// A value of as many cells as `values` holds, from number `from` on, x fastest, where every row is `columns` long: the
+    /// grid's own, or one less in each where the last column is left out.
+    pub fn fill(
+        &self,
+        columns: usize,
+        from: usize,
+        values: &mut [f64],
+        value: impl Fn(&Cell<S::State, S::Ground>) -> f64,
+    ) {
+        let (mut number, mut rest) = (from, values);
+        while !rest.is_empty() {
+            let (i, j) = (number % columns, number / columns);
+            let (row, after) = rest.split_at_mut((columns - i).min(rest.len()));
+            let place = self.layout.place(i as isize, j as isize);
+            let (states, grounds) = (self.now.row(place, row.len()), self.grounds.row(place, row.len()));
+            number += row.len();
+            for (i, here) in row.iter_mut().enumerate() {
+                *here = value(&Cell { state: states.get(i), ground: grounds.get(i) });
+            }
+            rest = after;
+        }
+    }
+
+    /// A value of every cell, x fastest.
+    pub fn map(&self, value: impl Fn(&Cell<S::State, S::Ground>) -> f64 + Sync) -> Vec<f64> {
+        const AT_ONCE: usize = 1 << 14;
+        let mut values = vec![0.0; self.grid.count()];
+        let parts = values.par_chunks_mut(AT_ONCE).enumerate();
+        parts.for_each(|(k, part)| self.fill(self.layout.columns, k * AT_ONCE, part, &value));
+        values
+    }
+
     /// Volume that has left by the left, right, bottom and top end and into nodata since the start.
     pub fn out(&self) -> [f64; 5] {
         self.out.map(|sum| sum.value() * self.grid.measure())
@@ -570,7 +602,8 @@ impl<const D: usize, S: Scheme<D, f64>> Simulation<D, S> {
                 }
             }
         }
-        self.rate = self.levels.iter().fold(0.0, |most, level| if most < level.rate { level.rate } else { most });
+        self.rate =
+            self.levels.iter().fold(0.0, |most, level| if most < level.rate { level.rate } else { most });
     }
 
     /// Let every tile be computed in the next step; changes no result, only what it costs.
@@ -588,8 +621,7 @@ impl<const D: usize, S: Scheme<D, f64>> Simulation<D, S> {
         self.find_stirring();
         let across = self.across;
         let wide = across.min((STRIP - 2) / tile_size(D)[0]);
-        let high =
-            (self.stirring.len() / (wide * 4 * rayon::current_num_threads())).clamp(1, MOST_TILES);
+        let high = (self.stirring.len() / (wide * 4 * rayon::current_num_threads())).clamp(1, MOST_TILES);
         self.awake.clear();
         self.runs.clear();
         for &number in &self.stirring {
@@ -681,6 +713,20 @@ impl<const D: usize, S: Scheme<D, f64>> Simulation<D, S> {
             self.survey();
         }
         fits
+    }
+}
+
+impl<const D: usize, S: Scheme<D, f64>> Simulation<D, S> {
+    /// Give back what only steps need, for there will be none.
+    pub fn close(&mut self) {
+        self.next = Field::default();
+    }
+    /// The summary maps by name, x fastest, each copied when all else and those before it are given back.
+    pub fn into_maps(self) -> Vec<(&'static str, Vec<f64>)> {
+        let Simulation { maps, layout, now, next, grounds, .. } = self;
+        drop((now, next, grounds));
+        let named = maps.into_iter().flat_map(Maps::into_named);
+        named.map(|(name, map)| (name, layout.unpadded(&map))).collect()
     }
 }
 

@@ -1,9 +1,13 @@
-//! Terrain: the bed z = b(x, y) of a raster with its gradient and Hessian by local least squares.
+//! Terrain: the bed z = b(x, y) of a raster, and its gradient and Hessian by local least squares.
 
 mod fit;
 
+pub use fit::Fit;
+
 use crate::raster::Raster;
+use fit::Windows;
 use rayon::prelude::*;
+use std::sync::Arc;
 
 /// The length over which the bed's gradient and curvature are taken.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -26,15 +30,13 @@ impl Curvature {
     }
 }
 
-/// A bed with its derivatives, one entry per cell in the order of [`Raster::values`]; zero at nodata cells.
+/// A bed whose derivatives are fitted where they are asked for: they take more memory than the bed, and a run asks once.
 #[derive(Debug, Clone)]
 pub struct Terrain {
     /// Elevation b of the bed \[m\], NaN outside.
-    pub bed: Raster,
-    /// Gradient (b_x, b_y).
-    pub gradient: Vec<[f64; 2]>,
-    /// Hessian (b_xx, b_xy, b_yy) \[1/m\]; zero with [`Curvature::Off`].
-    pub hessian: Vec<[f64; 3]>,
+    pub bed: Arc<Raster>,
+    windows: Windows,
+    curved: bool,
 }
 
 /// How steep a terrain is.
@@ -51,38 +53,44 @@ pub struct Steepness {
 }
 
 impl Terrain {
-    /// Fits b + b_x x + b_y y + b_xx x^2/2 + b_xy x y + b_yy y^2/2 around every cell by least squares, all cells of
-    /// its window weighing the same.
+    /// The bed with windows of this length around its cells.
+    pub fn new(bed: impl Into<Arc<Raster>>, curvature: Curvature) -> Terrain {
+        let bed = bed.into();
+        let windows = Windows::new(curvature.half_width(bed.cell), bed.cell);
+        Terrain { bed, windows, curved: curvature != Curvature::Off }
+    }
+
+    /// Fits b + b_x x + b_y y + b_xx x^2/2 + b_xy x y + b_yy y^2/2 around the cell (column, row) by least squares, all
+    /// cells of its window weighing the same; zero at nodata, the Hessian zero with [`Curvature::Off`].
     ///
     /// Nodata cells and cells beyond the edge are left out. Where the rest does not determine the six coefficients
     /// (ragged 3 x 3 windows at an edge), the window widens by one cell on each side; where that fails too, a plane
     /// is fitted, then differences towards the neighbours there are, and a lone cell is level. Every quadratic bed
     /// is reproduced exactly but for rounding, and beds mirrored in an axis give mirrored derivatives bit for bit.
-    pub fn new(bed: Raster, curvature: Curvature) -> Terrain {
-        let half = curvature.half_width(bed.cell);
-        let fits = fit::derivatives(&bed, half);
-        let gradient = fits.par_iter().map(|fit| fit.gradient).collect();
-        let hessian = match curvature {
-            Curvature::Length(_) => fits.par_iter().map(|fit| fit.hessian).collect(),
-            Curvature::Off => vec![[0.0; 3]; fits.len()],
-        };
-        Terrain { bed, gradient, hessian }
+    pub fn fit(&self, cell: [usize; 2]) -> Fit {
+        let fit = self.windows.fit(&self.bed, cell);
+        if self.curved { fit } else { Fit { hessian: [0.0; 3], ..fit } }
     }
 
-    /// Cosine of the slope of a cell, c = 1 / sqrt(1 + |grad b|^2).
-    pub fn cosine(&self, cell: usize) -> f64 {
-        let [x, y] = self.gradient[cell];
-        1.0 / (1.0 + (x * x + y * y)).sqrt()
+    /// The fits of all cells with values.
+    fn fits(&self) -> impl ParallelIterator<Item = Fit> {
+        let Raster { columns, values, .. } = &*self.bed;
+        let valid = (0..values.len()).into_par_iter().filter(|&k| !values[k].is_nan());
+        valid.map(move |k| self.fit([k % columns, k / columns]))
+    }
+
+    /// How many cells have a fit of this kind.
+    pub fn count(&self, kind: impl Fn(&Fit) -> bool + Sync + Send) -> usize {
+        self.fits().filter(kind).count()
     }
 
     /// Largest slope, and the cells steeper than `limit` \[radians\].
     pub fn steepness(&self, limit: f64) -> Steepness {
-        let valid = (0..self.gradient.len()).filter(|&k| !self.bed.values[k].is_nan());
-        let tangent = |k: usize| self.gradient[k][0].hypot(self.gradient[k][1]);
-        let count = |(cells, steeper, max): (usize, usize, f64), t: f64| {
-            (cells + 1, steeper + usize::from(t > limit.tan()), max.max(t))
-        };
-        let (cells, steeper, max) = valid.map(tangent).fold((0, 0, 0.0), count);
+        let tangents = self.fits().map(|fit| fit.gradient[0].hypot(fit.gradient[1]));
+        let one = |t: f64| (1, usize::from(t > limit.tan()), t);
+        type Found = (usize, usize, f64);
+        let both = |a: Found, b: Found| (a.0 + b.0, a.1 + b.1, a.2.max(b.2));
+        let (cells, steeper, max) = tangents.map(one).reduce(|| (0, 0, 0.0), both);
         Steepness { cells, steeper, share: steeper as f64 / cells.max(1) as f64, max_slope: max.atan() }
     }
 }
@@ -96,14 +104,23 @@ mod tests {
         1500.0 + 0.3 * x - 0.7 * y + 0.011 * x * x - 0.023 * x * y + 0.017 * y * y
     }
 
+    /// The fit of every cell, x fastest.
+    fn fits(terrain: &Terrain) -> Vec<Fit> {
+        let Raster { columns, rows, .. } = *terrain.bed;
+        (0..rows * columns).map(|k| terrain.fit([k % columns, k / columns])).collect()
+    }
+
     fn worst(terrain: &Terrain) -> f64 {
+        let columns = terrain.bed.columns;
         let error = |k: usize| {
-            let (x, y) = (terrain.bed.x(k % terrain.bed.columns), terrain.bed.y(k / terrain.bed.columns));
+            let [column, row] = [k % columns, k / columns];
+            let (x, y) = (terrain.bed.x(column), terrain.bed.y(row));
             let exact = [0.3 + 0.022 * x - 0.023 * y, -0.7 - 0.023 * x + 0.034 * y, 0.022, -0.023, 0.034];
-            let found = terrain.gradient[k].iter().chain(&terrain.hessian[k]);
+            let fit = terrain.fit([column, row]);
+            let found = fit.gradient.into_iter().chain(fit.hessian);
             found.zip(exact).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max)
         };
-        let valid = (0..terrain.gradient.len()).filter(|&k| !terrain.bed.values[k].is_nan());
+        let valid = (0..terrain.bed.values.len()).filter(|&k| !terrain.bed.values[k].is_nan());
         valid.map(error).fold(0.0, f64::max)
     }
 
@@ -130,10 +147,10 @@ mod tests {
         let half = |length: f64| Curvature::Length(length).half_width(5.0);
         assert_eq!([half(1.0), half(14.9), half(15.0), half(20.0), half(40.0)], [1, 1, 2, 2, 4]);
         let rough = |x: f64, y: f64| (3.0 * x).sin() + (2.0 * y).cos();
-        let off = Terrain::new(sampled(9, 9, rough), Curvature::Off);
-        let narrow = Terrain::new(sampled(9, 9, rough), Curvature::Length(2.0));
-        assert_eq!(off.gradient, narrow.gradient);
-        assert!(off.hessian.iter().all(|h| *h == [0.0; 3]) && narrow.hessian[40][0] != 0.0);
+        let off = fits(&Terrain::new(sampled(9, 9, rough), Curvature::Off));
+        let narrow = fits(&Terrain::new(sampled(9, 9, rough), Curvature::Length(2.0)));
+        assert!(off.iter().zip(&narrow).all(|(off, narrow)| off.gradient == narrow.gradient));
+        assert!(off.iter().all(|fit| fit.hessian == [0.0; 3]) && narrow[40].hessian[0] != 0.0);
     }
 
     #[test]
@@ -148,20 +165,12 @@ mod tests {
             let east = Terrain::new(bed.with_values(values), Curvature::Length(length));
             let north = Terrain::new(bed.with_values(flipped), Curvature::Length(length));
             let terrain = Terrain::new(bed, Curvature::Length(length));
-            for k in 0..rows * columns {
-                let ([x, y], [xx, xy, yy]) = (terrain.gradient[k], terrain.hessian[k]);
-                let mirrored = k / columns * columns + columns - 1 - k % columns;
-                assert_eq!(
-                    (east.gradient[mirrored], east.hessian[mirrored]),
-                    ([-x, y], [xx, -xy, yy]),
-                    "{k}"
-                );
-                let mirrored = (rows - 1 - k / columns) * columns + k % columns;
-                assert_eq!(
-                    (north.gradient[mirrored], north.hessian[mirrored]),
-                    ([x, -y], [xx, -xy, yy]),
-                    "{k}"
-                );
+            for [i, j] in (0..rows).flat_map(|j| (0..columns).map(move |i| [i, j])) {
+                let Fit { gradient: [x, y], hessian: [xx, xy, yy] } = terrain.fit([i, j]);
+                let mirrored = Fit { gradient: [-x, y], hessian: [xx, -xy, yy] };
+                assert_eq!(east.fit([columns - 1 - i, j]), mirrored, "{i} {j}");
+                let mirrored = Fit { gradient: [x, -y], hessian: [xx, -xy, yy] };
+                assert_eq!(north.fit([i, rows - 1 - j]), mirrored, "{i} {j}");
             }
         }
     }
@@ -172,23 +181,22 @@ mod tests {
         let bed = sampled(12, 12, rough);
         let terrain = Terrain::new(bed.clone(), Curvature::Length(6.0));
         let swapped = Terrain::new(sampled(12, 12, |x, y| rough(y, x)), Curvature::Length(6.0));
-        for k in (0..144).filter(|k| (3..9).contains(&(k % 12)) && (3..9).contains(&(k / 12))) {
-            let ([x, y], [xx, xy, yy]) = (terrain.gradient[k], terrain.hessian[k]);
-            let other = k % 12 * 12 + k / 12;
-            assert_eq!((swapped.gradient[other], swapped.hessian[other]), ([y, x], [yy, xy, xx]));
+        for [i, j] in (3..9).flat_map(|j| (3..9).map(move |i| [i, j])) {
+            let Fit { gradient: [x, y], hessian: [xx, xy, yy] } = terrain.fit([i, j]);
+            assert_eq!(swapped.fit([j, i]), Fit { gradient: [y, x], hessian: [yy, xy, xx] });
         }
     }
 
     #[test]
     fn poor_neighbourhoods_fall_back_to_planes_differences_and_level() {
-        let strip = Terrain::new(sampled(9, 1, |x, _| 2.0 * x), Curvature::Length(4.0));
-        assert!(strip.gradient.iter().all(|g| (g[0] - 2.0).abs() < 1e-12 && g[1] == 0.0));
-        let pair = Terrain::new(sampled(2, 2, |x, y| 2.0 * x - y), Curvature::Length(4.0));
-        assert!(pair.gradient.iter().all(|g| (g[0] - 2.0).abs() < 1e-12 && (g[1] + 1.0).abs() < 1e-12));
-        assert!(pair.hessian.iter().all(|h| *h == [0.0; 3]));
+        let strip = fits(&Terrain::new(sampled(9, 1, |x, _| 2.0 * x), Curvature::Length(4.0)));
+        assert!(strip.iter().all(|f| (f.gradient[0] - 2.0).abs() < 1e-12 && f.gradient[1] == 0.0));
+        let pair = fits(&Terrain::new(sampled(2, 2, |x, y| 2.0 * x - y), Curvature::Length(4.0)));
+        let slope = |f: &Fit| (f.gradient[0] - 2.0).abs() < 1e-12 && (f.gradient[1] + 1.0).abs() < 1e-12;
+        assert!(pair.iter().all(|f| slope(f) && f.hessian == [0.0; 3]));
         let lone = sampled(5, 5, |x, y| if x == 2.5 && y == 2.5 { 7.0 } else { f64::NAN });
-        let lone = Terrain::new(lone, Curvature::Length(4.0));
-        assert!(lone.gradient.iter().all(|g| *g == [0.0; 2]) && lone.hessian.iter().all(|h| *h == [0.0; 3]));
+        let lone = fits(&Terrain::new(lone, Curvature::Length(4.0)));
+        assert!(lone.iter().all(|f| *f == Fit::default()));
     }
 
     #[test]
@@ -206,6 +214,6 @@ mod tests {
         assert_eq!((steep.cells, steep.steeper), (140, 63));
         assert!((steep.max_slope.tan() - 2.0).abs() < 1e-9 && (steep.share - 0.45).abs() < 1e-15);
         let terrain = Terrain::new(sampled(5, 5, |x, _| x), Curvature::Off);
-        assert!((terrain.cosine(12) - 0.5f64.sqrt()).abs() < 1e-12);
+        assert!((terrain.fit([2, 2]).cosine() - 0.5f64.sqrt()).abs() < 1e-12);
     }
 }

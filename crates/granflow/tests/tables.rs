@@ -138,6 +138,7 @@ fn run(name: &str, plane: Plane, full: &[f64], files: &[FileKind]) -> Finished {
         runout: None,
         reach_angle: None,
         wall_seconds: 1.0,
+        stepping_seconds: 0.5,
         cell_updates_per_second: 1.0,
         threads: 1,
         version: "0".to_owned(),

@@ -1,6 +1,8 @@
 //! What a sandpile would compute: table, sources, layers at the start.
 
 use granflow::case::{Axis, Case, Edge, TablePlan};
+use granflow::hadeler_kuttler::scheme::HadelerKuttler;
+use granflow::simulation::Simulation;
 
 use super::{axis_line, describe, effort, range};
 use crate::failure::Failure;
@@ -43,7 +45,9 @@ fn table_lines<const D: usize>(case: &Case) -> Result<Vec<(&'static str, String)
     } else {
         // The paper's bound along each axis, dt max(1, max v)/h: slopes are at most 1.
         let rate = axes.iter().map(|axis| v.max(1.0) / axis.width()).sum();
-        lines.extend(effort(case, plan.rolling.len(), rate));
+        let bytes = plan.nodes.counts().iter().product::<usize>()
+            * Simulation::<D, HadelerKuttler>::bytes_per_cell(false);
+        lines.extend(effort(case, bytes, rate));
     }
     Ok(lines)
 }

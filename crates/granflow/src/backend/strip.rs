@@ -99,7 +99,9 @@ impl<'a, const D: usize, L: Wide, T: Scheme<D, L>> Strip<'a, D, L, T> {
         let place = sweep.layout.place(columns[0] as isize, rows[0] as isize);
         let mut grounds = sweep.grounds.starts::<S::Ground>();
         if even {
-            for (k, (start, lanes)) in grounds.iter_mut().zip(&mut desk.ground).take(T::Ground::COUNT).enumerate() {
+            for (k, (start, lanes)) in
+                grounds.iter_mut().zip(&mut desk.ground).take(T::Ground::COUNT).enumerate()
+            {
                 if !has(T::Ground::SHARED, k) {
                     // SAFETY: the cell lies inside the layout.
                     *lanes = unsafe {

@@ -68,13 +68,7 @@ impl Count {
     pub(super) const fn new() -> Self {
         const { assert!(STRIP <= 128) };
         let none = Columns::NONE;
-        Count {
-            rate: none,
-            square: none,
-            change: [none; MOST_PARTS],
-            stirs: 0,
-            infinite: 0,
-        }
+        Count { rate: none, square: none, change: [none; MOST_PARTS], stirs: 0, infinite: 0 }
     }
 
     /// Take the cells of `live` into account, the first of which lies in `column`: their rates and squared speeds.

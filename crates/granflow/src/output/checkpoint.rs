@@ -3,15 +3,17 @@
 //! Layout, all little endian: the line `granflow checkpoint 1`, a u32 length, that many bytes of JSON (version, case, step,
 //! names and lengths), then as raw f64 the time, the scalars and the arrays in that order, then the CRC-32 of all before.
 
-use super::{Error, Precision, whole_file};
+use super::{Error, Precision, Summed, whole_file};
 use serde::{Deserialize, Serialize};
 use std::borrow::Cow;
-use std::fs;
-use std::io::{self, Write};
+use std::fs::File;
+use std::io::{self, BufReader, Read, Write};
 use std::path::Path;
 
 const MAGIC: &[u8] = b"granflow checkpoint 1\n";
 const VERSION: &str = env!("CARGO_PKG_VERSION");
+/// Numbers that are turned from or into bytes in one go.
+const AT_ONCE: usize = 1 << 15;
 
 /// The state of a run between two steps.
 #[derive(Debug, Clone, PartialEq)]
@@ -25,7 +27,41 @@ pub struct Checkpoint<'a> {
     /// Numbers of the run: sums of the ledger with their compensation, peaks, the last step size.
     pub scalars: Vec<(String, f64)>,
     /// Fields of the run, any length each.
-    pub arrays: Vec<(String, Cow<'a, [f64]>)>,
+    pub arrays: Vec<(String, Numbers<'a>)>,
+}
+
+/// The numbers of an array. The file has them all in double precision, and so they are read.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Numbers<'a> {
+    /// In double precision.
+    Double(Cow<'a, [f64]>),
+    /// In single precision.
+    Single(&'a [f32]),
+}
+
+impl Numbers<'_> {
+    pub(crate) fn len(&self) -> usize {
+        match self {
+            Numbers::Double(values) => values.len(),
+            Numbers::Single(values) => values.len(),
+        }
+    }
+    /// The same, not more than so many at once.
+    pub(crate) fn chunks(&self, most: usize) -> Vec<Numbers<'_>> {
+        match self {
+            Numbers::Double(values) => values.chunks(most).map(|part| Numbers::Double(part.into())).collect(),
+            Numbers::Single(values) => values.chunks(most).map(Numbers::Single).collect(),
+        }
+    }
+    /// Append them to `bytes` as the file has them.
+    pub(crate) fn encode(&self, bytes: &mut Vec<u8>) {
+        match self {
+            Numbers::Double(values) => Precision::F64.encode(values, bytes),
+            Numbers::Single(values) => {
+                values.iter().for_each(|&value| Precision::F64.encode(&[value.into()], bytes));
+            }
+        }
+    }
 }
 
 #[derive(Serialize, Deserialize)]
@@ -49,6 +85,19 @@ impl Checkpoint<'_> {
     /// # Errors
     /// [`Error::Io`]; the older checkpoint then remains.
     pub fn write(&self, path: &Path) -> Result<(), Error> {
+        write_from(path, &self.head(), |out| {
+            let mut bytes = Vec::new();
+            for part in self.arrays.iter().flat_map(|(_, values)| values.chunks(AT_ONCE)) {
+                bytes.clear();
+                part.encode(&mut bytes);
+                out.write_all(&bytes)?;
+            }
+            Ok(())
+        })
+    }
+
+    /// The bytes before the arrays.
+    pub(crate) fn head(&self) -> Vec<u8> {
         let header = Header {
             granflow: VERSION.into(),
             case: self.case.clone(),
@@ -56,31 +105,19 @@ impl Checkpoint<'_> {
             scalars: self.scalars.iter().map(|(name, _)| name.clone()).collect(),
             arrays: self.arrays.iter().map(|(name, values)| (name.clone(), values.len())).collect(),
         };
-        let header = serde_json::to_vec(&header).map_err(|error| Error::invalid(path, error.to_string()))?;
-        whole_file(path, |out| {
-            let mut out = Summed { out, crc: crc32fast::Hasher::new() };
-            out.write_all(MAGIC)?;
-            out.write_all(&(header.len() as u32).to_le_bytes())?;
-            out.write_all(&header)?;
-            out.write_all(&self.time.to_le_bytes())?;
-            for (_, value) in &self.scalars {
-                out.write_all(&value.to_le_bytes())?;
-            }
-            let mut bytes = Vec::new();
-            for part in self.arrays.iter().flat_map(|(_, values)| values.chunks(1 << 15)) {
-                bytes.clear();
-                Precision::F64.encode(part, &mut bytes);
-                out.write_all(&bytes)?;
-            }
-            let crc = out.crc.clone().finalize();
-            out.write_all(&crc.to_le_bytes())
-        })
+        let header = serde_json::to_vec(&header).expect("names and counts are JSON");
+        let mut bytes = MAGIC.to_vec();
+        bytes.extend((header.len() as u32).to_le_bytes());
+        bytes.extend(header);
+        Precision::F64.encode(&[self.time], &mut bytes);
+        self.scalars.iter().for_each(|(_, value)| Precision::F64.encode(&[*value], &mut bytes));
+        bytes
     }
 
     /// The array called `name`.
     #[must_use]
-    pub fn array(&self, name: &str) -> Option<&[f64]> {
-        self.arrays.iter().find(|(own, _)| own == name).map(|(_, values)| values.as_ref())
+    pub fn array(&self, name: &str) -> Option<&Numbers<'_>> {
+        self.arrays.iter().find(|(own, _)| own == name).map(|(_, values)| values)
     }
 
     /// The scalar called `name`.
@@ -90,6 +127,21 @@ impl Checkpoint<'_> {
     }
 }
 
+/// Writes a checkpoint as [`Checkpoint::write`] does, from its [`Checkpoint::head`] and what `arrays` gives: the raw f64 of
+/// its arrays, one after the other.
+pub(crate) fn write_from(
+    path: &Path,
+    head: &[u8],
+    arrays: impl FnOnce(&mut dyn Write) -> io::Result<()>,
+) -> Result<(), Error> {
+    whole_file(path, |out| {
+        let mut out = Summed::new(out);
+        out.write_all(head)?;
+        arrays(&mut out)?;
+        out.finish()
+    })
+}
+
 impl Checkpoint<'static> {
     /// Reads the checkpoint of the case called `case`, every bit as it was written.
     ///
@@ -97,19 +149,24 @@ impl Checkpoint<'static> {
     /// [`Error::Io`] if there is none; [`Error::Damaged`] if it is truncated or altered; [`Error::Mismatch`] if it was
     /// written by another version of granflow (whose last bits may differ) or for another case.
     pub fn read(path: &Path, case: &str) -> Result<Self, Error> {
-        let bytes = fs::read(path).map_err(Error::io(path, "read"))?;
-        let Some(rest) = bytes.strip_prefix(MAGIC) else {
-            let problem = if bytes.starts_with(b"granflow checkpoint ") {
+        let unread = || Error::io(path, "read");
+        let file = File::open(path).map_err(unread())?;
+        let size = file.metadata().map_err(unread())?.len();
+        let mut file =
+            Hashed { from: BufReader::with_capacity(1 << 18, file), crc: crc32fast::Hasher::new() };
+        let mut magic = Vec::new();
+        file.by_ref().take(MAGIC.len() as u64).read_to_end(&mut magic).map_err(unread())?;
+        if magic != MAGIC {
+            let problem = if magic.starts_with(b"granflow checkpoint ") {
                 "this checkpoint has a layout that this version of granflow does not read; resume with the one that wrote it"
             } else {
                 "this is not a checkpoint of granflow"
             };
             return Err(Error::damaged(path, problem));
-        };
-        let short = |wanted: usize| {
+        }
+        let short = |wanted: u64| {
             let problem = format!(
-                "the checkpoint is truncated: {} bytes where {wanted} are expected; start the run again without --resume",
-                bytes.len()
+                "the checkpoint is truncated: {size} bytes where {wanted} are expected; start the run again without --resume"
             );
             Error::damaged(path, problem)
         };
@@ -118,19 +175,34 @@ impl Checkpoint<'static> {
                            start the run again without --resume";
             Error::damaged(path, problem)
         };
-        let (length, rest) = rest.split_first_chunk().ok_or_else(|| short(MAGIC.len() + 4))?;
-        let length = u32::from_le_bytes(*length) as usize;
-        let front = MAGIC.len() + 4 + length;
-        let (header, rest) = rest.split_at_checked(length).ok_or_else(|| short(front))?;
-        let header: Header = serde_json::from_slice(header).map_err(|_| altered())?;
-        let lengths = header.arrays.iter().map(|(_, length)| *length);
-        let numbers = lengths.fold(1 + header.scalars.len(), usize::saturating_add); // a damaged length may be huge
-        let wanted = numbers.saturating_mul(8).saturating_add(4);
-        if rest.len() != wanted {
-            return Err(if rest.len() < wanted { short(front.saturating_add(wanted)) } else { altered() });
+        let before = MAGIC.len() as u64 + 4;
+        if size < before {
+            return Err(short(before));
         }
-        let (body, crc) = bytes.split_at(bytes.len() - 4);
-        if crc != crc32fast::hash(body).to_le_bytes() {
+        let mut length = [0; 4];
+        file.read_exact(&mut length).map_err(unread())?;
+        let front = before + u64::from(u32::from_le_bytes(length));
+        if size < front {
+            return Err(short(front));
+        }
+        let mut header = vec![0; (front - before) as usize];
+        file.read_exact(&mut header).map_err(unread())?;
+        let header: Header = serde_json::from_slice(&header).map_err(|_| altered())?;
+        let lengths = header.arrays.iter().map(|(_, length)| *length as u64);
+        let numbers = lengths.fold(1 + header.scalars.len() as u64, u64::saturating_add); // a damaged length may be huge
+        let wanted = numbers.saturating_mul(8).saturating_add(4).saturating_add(front);
+        if size != wanted {
+            return Err(if size < wanted { short(wanted) } else { altered() });
+        }
+        let mut front = file.numbers(1 + header.scalars.len()).map_err(unread())?;
+        let time = front.remove(0);
+        let mut arrays = Vec::new();
+        for (name, length) in header.arrays {
+            arrays.push((name, Numbers::Double(file.numbers(length).map_err(unread())?.into())));
+        }
+        let (computed, mut crc) = (file.crc.clone().finalize(), [0; 4]);
+        file.read_exact(&mut crc).map_err(unread())?;
+        if crc != computed.to_le_bytes() {
             return Err(altered());
         }
         if header.granflow != VERSION {
@@ -149,39 +221,56 @@ impl Checkpoint<'static> {
             );
             return Err(Error::mismatch(path, problem));
         }
-        let mut numbers = rest[..rest.len() - 4].as_chunks().0.iter().map(|&bytes| f64::from_le_bytes(bytes));
-        let time = numbers.next().ok_or_else(altered)?;
-        let scalars = header.scalars.into_iter().zip(numbers.by_ref()).collect();
-        let arrays = header
-            .arrays
-            .into_iter()
-            .map(|(name, length)| (name, numbers.by_ref().take(length).collect()))
-            .collect();
+        let scalars = header.scalars.into_iter().zip(front).collect();
         Ok(Self { case: header.case, step: header.step, time, scalars, arrays })
+    }
+
+    /// The array called `name`, which is then no longer in the checkpoint.
+    pub fn take(&mut self, name: &str) -> Option<Vec<f64>> {
+        let place = self.arrays.iter().position(|(own, _)| own == name)?;
+        Some(match self.arrays.swap_remove(place).1 {
+            Numbers::Double(values) => values.into_owned(),
+            Numbers::Single(values) => values.iter().map(|&value| value.into()).collect(),
+        })
     }
 }
 
-/// A sink that keeps the checksum of what passes.
-struct Summed<'a> {
-    out: &'a mut dyn Write,
+/// A source that keeps the checksum of what passes.
+struct Hashed<R> {
+    from: R,
     crc: crc32fast::Hasher,
 }
 
-impl Write for Summed<'_> {
-    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
-        let written = self.out.write(bytes)?;
-        self.crc.update(&bytes[..written]);
-        Ok(written)
+impl<R: Read> Read for Hashed<R> {
+    fn read(&mut self, bytes: &mut [u8]) -> io::Result<usize> {
+        let read = self.from.read(bytes)?;
+        self.crc.update(&bytes[..read]);
+        Ok(read)
     }
+}
 
-    fn flush(&mut self) -> io::Result<()> {
-        self.out.flush()
+impl<R: Read> Hashed<R> {
+    /// The next numbers, of which no second copy is made.
+    fn numbers(&mut self, count: usize) -> io::Result<Vec<f64>> {
+        let mut numbers = Vec::with_capacity(count);
+        let mut bytes = vec![0; 8 * AT_ONCE.min(count)];
+        while numbers.len() < count {
+            let part = &mut bytes[..8 * AT_ONCE.min(count - numbers.len())];
+            self.read_exact(part)?;
+            numbers.extend(part.as_chunks().0.iter().map(|&bytes| f64::from_le_bytes(bytes)));
+        }
+        Ok(numbers)
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use std::fs;
+
+    fn double(values: impl IntoIterator<Item = f64>) -> Numbers<'static> {
+        Numbers::Double(values.into_iter().collect())
+    }
 
     fn sample() -> Checkpoint<'static> {
         Checkpoint {
@@ -190,9 +279,10 @@ mod tests {
             time: 0.1 + 0.2,
             scalars: vec![("mass".into(), -0.0), ("peak".into(), f64::INFINITY)],
             arrays: vec![
-                ("thickness".into(), vec![1.0, f64::from_bits(0x7ff8_0000_0000_beef), 5e-324].into()),
-                ("nothing".into(), vec![].into()),
-                ("momentum".into(), (0..70_000).map(|i| f64::from(i).sin()).collect()),
+                ("thickness".into(), double([1.0, f64::from_bits(0x7ff8_0000_0000_beef), 5e-324])),
+                ("nothing".into(), double([])),
+                ("momentum".into(), double((0..70_000).map(|i| f64::from(i).sin()))),
+                ("peak_speed".into(), Numbers::Single(&[0.1, f32::MIN_POSITIVE])),
             ],
         }
     }
@@ -203,14 +293,19 @@ mod tests {
         let path = folder.path().join("checkpoint/state");
         let written = sample();
         written.write(&path).unwrap();
-        let read = Checkpoint::read(&path, &written.case).unwrap();
-        let bits = |values: Option<&[f64]>| values.unwrap().iter().map(|v| v.to_bits()).collect::<Vec<_>>();
+        let mut read = Checkpoint::read(&path, &written.case).unwrap();
+        let bytes = |numbers: Option<&Numbers>| {
+            let mut bytes = Vec::new();
+            numbers.unwrap().encode(&mut bytes);
+            bytes
+        };
         assert_eq!((read.step, read.time.to_bits()), (u64::MAX, written.time.to_bits()));
         assert_eq!(read.scalar("mass").unwrap().to_bits(), (-0.0_f64).to_bits());
         assert_eq!(read.scalars, written.scalars);
-        for name in ["thickness", "nothing", "momentum"] {
-            assert_eq!(bits(read.array(name)), bits(written.array(name)), "{name}");
+        for name in ["thickness", "nothing", "momentum", "peak_speed"] {
+            assert_eq!(bytes(read.array(name)), bytes(written.array(name)), "{name}");
         }
+        assert_eq!(read.take("peak_speed").unwrap(), [f64::from(0.1_f32), f64::from(f32::MIN_POSITIVE)]);
         assert!(read.array("absent").is_none());
     }
 

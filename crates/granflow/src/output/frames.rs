@@ -2,16 +2,21 @@
 //!
 //! Layout, all little endian: the line `granflow frames 1`, a u32 length, that many bytes of JSON (precision, names and
 //! lengths of the fields), their CRC-32; then frames of equal size: the time (f64), the fields one after the other, the
-//! CRC-32 of time and fields. A frame is synced before [`Frames::append`] returns, so a crash can tear only the last one.
+//! CRC-32 of time and fields. A frame is synced before [`Frames::append`] returns, so a crash can tear only the last one:
+//! whoever finds an earlier one torn knows that the disk has failed. The sync is waited for beside the steps.
 
-use super::{Error, Precision, whole_file};
+use super::{Error, Precision, Summed, whole_file};
 use serde::{Deserialize, Serialize};
 use std::fmt;
 use std::fs::{File, OpenOptions};
 use std::io::{self, Read, Seek, SeekFrom, Write};
+use std::ops::Range;
 use std::path::{Path, PathBuf};
 
 const MAGIC: &[u8] = b"granflow frames 1\n";
+
+/// Bytes of a frame that are checked in one go.
+const AT_ONCE: usize = 1 << 18;
 
 /// A named field of every frame and how many numbers it has.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
@@ -97,12 +102,20 @@ impl Frames {
         };
         let length = frames.file.metadata().map_err(Error::io(path, "read"))?.len();
         let whole = (length - start) / frames.frame_size();
-        let mut bytes = vec![0; frames.frame_size() as usize];
+        let size = frames.frame_size() as usize;
+        let mut bytes = vec![0; size.min(AT_ONCE)];
         for frame in 0..whole {
-            frames.file.read_exact(&mut bytes).map_err(Error::io(path, "read"))?;
-            let (body, crc) = bytes.split_at(bytes.len() - 4);
-            if crc == crc32fast::hash(body).to_le_bytes() {
-                frames.times.extend(Precision::F64.decode(&body[..8]));
+            let (mut sum, mut time, mut rest, mut crc) = (crc32fast::Hasher::new(), None, size - 4, [0; 4]);
+            while rest > 0 {
+                let part = &mut bytes[..rest.min(AT_ONCE)];
+                frames.file.read_exact(part).map_err(Error::io(path, "read"))?;
+                time = time.or_else(|| Precision::F64.decode(&part[..8]).pop());
+                sum.update(part);
+                rest -= part.len();
+            }
+            frames.file.read_exact(&mut crc).map_err(Error::io(path, "read"))?;
+            if crc == sum.finalize().to_le_bytes() {
+                frames.times.extend(time);
             } else if frame + 1 < whole {
                 let problem = format!(
                     "frame {frame} of {whole} does not match its checksum: the file was altered or the disk failed; \
@@ -133,25 +146,67 @@ impl Frames {
             let problem = format!("a frame has lengths {found:?}, the fields are {:?}", self.fields);
             return Err(Error::invalid(&self.path, problem));
         }
+        let precision = self.precision;
+        self.append_from(time, |out| {
+            let mut bytes = Vec::new();
+            for values in values {
+                bytes.clear();
+                precision.encode(values, &mut bytes);
+                out.write_all(&bytes)?;
+            }
+            Ok(())
+        })
+    }
+
+    /// Appends the frame at `time` and syncs it to disk; `body` gives its fields one after the other, in the precision of the
+    /// store, so that no frame needs to be in memory as a whole.
+    ///
+    /// # Errors
+    /// As [`Frames::append`], and those of `body`.
+    pub fn append_from(
+        &mut self,
+        time: f64,
+        body: impl FnOnce(&mut dyn Write) -> io::Result<()>,
+    ) -> Result<(), Error> {
         if time.is_nan() || self.times.last().is_some_and(|&last| last >= time) {
             let problem = format!("a frame at time {time} cannot follow the one at {:?}", self.times.last());
             return Err(Error::invalid(&self.path, problem));
         }
-        let mut bytes = time.to_le_bytes().to_vec();
-        values.iter().for_each(|values| self.precision.encode(values, &mut bytes));
-        bytes.extend(crc32fast::hash(&bytes).to_le_bytes());
-        let end = self.end();
-        let write = |file: &mut File| -> io::Result<()> {
+        let (end, size) = (self.end(), self.frame_size());
+        let mut file = &self.file;
+        let write = || -> io::Result<()> {
             file.seek(SeekFrom::Start(end))?;
-            file.write_all(&bytes)?;
-            file.sync_data()
+            let mut out = Summed::new(&mut file);
+            out.write_all(&time.to_le_bytes())?;
+            body(&mut out)?;
+            if out.bytes + 4 != size {
+                let problem = format!("a frame has {} bytes instead of {size}", out.bytes + 4);
+                return Err(io::Error::other(Error::invalid(&self.path, problem)));
+            }
+            out.finish()?;
+            self.file.sync_data()
         };
-        if let Err(refused) = write(&mut self.file) {
+        if let Err(refused) = write() {
             let _ = self.file.set_len(end); // if this fails too, `open` drops the torn end
             return Err(Error::io(&self.path, "write")(refused));
         }
         self.times.push(time);
         Ok(())
+    }
+
+    /// The same store opened once more, to be read beside this one; what this one wrote is not checked again.
+    ///
+    /// # Errors
+    /// [`Error::Io`] if it cannot be opened.
+    pub fn again(&self) -> Result<Self, Error> {
+        Ok(Self {
+            path: self.path.clone(),
+            file: File::open(&self.path).map_err(Error::io(&self.path, "open"))?,
+            precision: self.precision,
+            fields: self.fields.clone(),
+            times: self.times.clone(),
+            start: self.start,
+        })
     }
 
     /// Drops the frames later than `time`, those after the checkpoint that a run goes on from; returns how many.
@@ -176,15 +231,27 @@ impl Frames {
     /// # Panics
     /// If `field` is not a number of [`Frames::fields`].
     pub fn read(&mut self, frame: usize, field: usize) -> Result<Vec<f64>, Error> {
+        let mut bytes = Vec::new();
+        self.read_bytes(frame, field, 0..self.fields[field].length, &mut bytes)?;
+        Ok(self.precision.decode(&bytes))
+    }
+
+    /// As [`Frames::read`], some of the numbers, as the bytes that are stored, in place of what `bytes` held.
+    pub(super) fn read_bytes(
+        &mut self,
+        frame: usize,
+        field: usize,
+        numbers: Range<usize>,
+        bytes: &mut Vec<u8>,
+    ) -> Result<(), Error> {
         let width = self.precision.width();
-        let before: usize = self.fields[..field].iter().map(|f| f.length * width).sum();
-        let mut bytes = vec![0; self.fields[field].length * width];
-        let offset = self.start + frame as u64 * self.frame_size() + 8 + before as u64;
+        let before = self.fields[..field].iter().map(|f| f.length).sum::<usize>() + numbers.start;
+        bytes.resize(numbers.len() * width, 0);
+        let offset = self.start + frame as u64 * self.frame_size() + 8 + (before * width) as u64;
         self.file
             .seek(SeekFrom::Start(offset))
-            .and_then(|_| self.file.read_exact(&mut bytes))
-            .map_err(Error::io(&self.path, "read"))?;
-        Ok(self.precision.decode(&bytes))
+            .and_then(|_| self.file.read_exact(bytes))
+            .map_err(Error::io(&self.path, "read"))
     }
 
     /// The number of the field called `name`.

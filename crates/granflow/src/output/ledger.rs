@@ -190,6 +190,15 @@ impl Ledger {
         Ok(())
     }
 
+    /// Syncs the lines to disk, before a checkpoint counts on them.
+    ///
+    /// # Errors
+    /// [`Error::Io`] if the disk refuses.
+    pub fn sync(&self) -> Result<(), Error> {
+        let file = OpenOptions::new().append(true).open(&self.path).map_err(Error::io(&self.path, "open"))?;
+        file.sync_data().map_err(Error::io(&self.path, "write"))
+    }
+
     /// Drops the lines later than `time`, those after the checkpoint that a run goes on from; returns how many.
     ///
     /// # Errors
@@ -205,6 +214,12 @@ impl Ledger {
     #[must_use]
     pub fn entries(&self) -> &[Entry] {
         &self.entries
+    }
+
+    /// [`Ledger::entries`], to keep.
+    #[must_use]
+    pub fn into_entries(self) -> Vec<Entry> {
+        self.entries
     }
 
     fn rewrite(&self) -> Result<(), Error> {

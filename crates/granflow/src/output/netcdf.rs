@@ -7,12 +7,16 @@ use super::frames::Frames;
 use super::hdf5::{Block, allocate};
 use super::{Error, Precision, whole_file};
 use netcdf_writer::{DimensionId, NcAttrValue, NcFileBuilder, NcWriteFormat, NcWriteOptions, VariableId};
+use std::borrow::Cow;
 use std::io::{self, Write};
 use std::path::Path;
 use std::time::{SystemTime, UNIX_EPOCH};
 
 /// An attribute of HDF5 must fit 64 KiB unless it lies in the heap; longer texts go there.
 const LONGEST_INLINE_TEXT: usize = 60_000;
+
+/// Numbers of a map that are turned into bytes in one go.
+const PART: usize = 1 << 15;
 
 /// A coordinate: a dimension with its values.
 #[derive(Debug, Clone, PartialEq)]
@@ -66,9 +70,9 @@ impl Axis {
 
 /// Where the values of a variable come from, row-major, without the time dimension.
 #[derive(Debug, Clone, PartialEq)]
-pub enum Values {
+pub enum Values<'a> {
     /// One map that does not change.
-    Static(Vec<f64>),
+    Static(Cow<'a, [f64]>),
     /// One map per instant, in memory.
     Series(Vec<Vec<f64>>),
     /// The field of this name in the store of frames.
@@ -77,7 +81,7 @@ pub enum Values {
 
 /// A quantity on some of the axes.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Variable {
+pub struct Variable<'a> {
     /// The name, such as `thickness`.
     pub name: String,
     /// What it is, in words.
@@ -89,7 +93,7 @@ pub struct Variable {
     /// Bits kept.
     pub precision: Precision,
     /// The numbers; NaN is "no value" and the file's `_FillValue`.
-    pub values: Values,
+    pub values: Values<'a>,
 }
 
 /// The coordinate reference system of a run on terrain.
@@ -103,7 +107,7 @@ pub struct Crs {
 
 /// Everything that `result.nc` holds.
 #[derive(Debug, Clone, PartialEq, Default)]
-pub struct Dataset {
+pub struct Dataset<'a> {
     /// Title of the run.
     pub title: String,
     /// What made the file; see [`history`].
@@ -115,11 +119,11 @@ pub struct Dataset {
     /// The coordinates.
     pub axes: Vec<Axis>,
     /// The quantities.
-    pub variables: Vec<Variable>,
+    pub variables: Vec<Variable<'a>>,
     /// Where on Earth.
     pub crs: Option<Crs>,
-    /// Cells without terrain: true means NaN in every variable whose map has this length.
-    pub outside: Option<Vec<bool>>,
+    /// NaN in cells without terrain: there every variable whose map has this length is NaN.
+    pub terrain: Option<&'a [f64]>,
 }
 
 /// A line for [`Dataset::history`]: the instant in UTC and the command, as in "2026-03-01T12:00:00Z granflow run a.toml".
@@ -139,7 +143,7 @@ pub fn history(now: SystemTime, command: &str) -> String {
     format!("{year:04}-{month:02}-{date:02}T{hour:02}:{minute:02}:{second:02}Z {command}")
 }
 
-impl Dataset {
+impl Dataset<'_> {
     /// Writes the file as a whole; stored series pass through memory one field of one frame at a time.
     ///
     /// # Errors
@@ -169,24 +173,35 @@ impl Dataset {
         mut frames: Option<&mut Frames>,
         out: &mut dyn Write,
     ) -> io::Result<()> {
+        let precision = variable.precision;
+        let terrain = self.terrain.filter(|terrain| terrain.len() == maps.length);
+        let mut nothing = Vec::new();
+        precision.encode(&[f64::NAN], &mut nothing);
         let mut bytes = Vec::new();
-        for instant in 0..maps.count {
-            let mut map = match (&variable.values, frames.as_deref_mut()) {
-                (Values::Static(map), _) => map.clone(),
-                (Values::Series(series), _) => series[instant].clone(),
+        // Part by part: a map is a good share of what a run takes.
+        let part = |from: usize| from..(from + PART).min(maps.length);
+        let parts = || (0..maps.length).step_by(PART).map(part);
+        for (instant, part) in (0..maps.count).flat_map(|instant| parts().map(move |part| (instant, part))) {
+            bytes.clear();
+            match (&variable.values, frames.as_deref_mut()) {
+                (Values::Static(map), _) => precision.encode(&map[part.clone()], &mut bytes),
+                (Values::Series(series), _) => precision.encode(&series[instant][part.clone()], &mut bytes),
                 (Values::Stored(_), Some(frames)) => {
-                    frames.read(instant, maps.field).map_err(io::Error::other)?
+                    let read = frames.read_bytes(instant, maps.field, part.clone(), &mut bytes);
+                    read.map_err(io::Error::other)?;
+                    // What is stored as it is wanted is not taken apart.
+                    if frames.precision() != precision {
+                        let values = frames.precision().decode(&bytes);
+                        bytes.clear();
+                        precision.encode(&values, &mut bytes);
+                    }
                 }
                 (Values::Stored(_), None) => unreachable!("plan() has refused this"),
-            };
-            if let Some(outside) = self.outside.as_ref().filter(|outside| outside.len() == map.len()) {
-                map.iter_mut()
-                    .zip(outside)
-                    .filter(|(_, outside)| **outside)
-                    .for_each(|(value, _)| *value = f64::NAN);
             }
-            bytes.clear();
-            variable.precision.encode(&map, &mut bytes);
+            if let Some(terrain) = terrain {
+                let cells = bytes.chunks_exact_mut(precision.width()).zip(&terrain[part]);
+                cells.filter(|(_, z)| z.is_nan()).for_each(|(cell, _)| cell.copy_from_slice(&nothing));
+            }
             out.write_all(&bytes)?;
         }
         Ok(())
@@ -202,7 +217,7 @@ impl Dataset {
         self.variables.iter().map(|variable| self.maps(variable, frames)).collect()
     }
 
-    fn maps(&self, variable: &Variable, frames: Option<&Frames>) -> Result<Maps, String> {
+    fn maps(&self, variable: &Variable<'_>, frames: Option<&Frames>) -> Result<Maps, String> {
         let name = &variable.name;
         let size = |own: &String| {
             let axis = self.axes.iter().find(|axis| axis.name == *own);
@@ -356,7 +371,7 @@ mod tests {
     use netcdf_reader::NcFile;
     use std::time::Duration;
 
-    fn variable(name: &str, axes: &[&str], precision: Precision, values: Values) -> Variable {
+    fn variable<'a>(name: &str, axes: &[&str], precision: Precision, values: Values<'a>) -> Variable<'a> {
         Variable {
             name: name.into(),
             long_name: format!("the {name}"),
@@ -367,7 +382,7 @@ mod tests {
         }
     }
 
-    fn sample(folder: &Path) -> (Dataset, Frames) {
+    fn sample(folder: &Path) -> (Dataset<'static>, Frames) {
         let fields = [("thickness", 6), ("speed", 6)];
         let fields = fields.map(|(name, length)| Field { name: name.into(), length }).into();
         let mut frames = Frames::create(&folder.join("frames"), Precision::F64, fields).unwrap();
@@ -397,7 +412,7 @@ mod tests {
                 variable("edge", &["time", "x"], Precision::F64, Values::Series(vec![vec![1.0; 3]; 3])),
             ],
             crs: Some(Crs { epsg: Some(31287), wkt: None }),
-            outside: Some(vec![false, true, false, false, false, false]),
+            terrain: Some(&[0.0, f64::NAN, 0.0, 0.0, 0.0, 0.0]),
         };
         (dataset, frames)
     }
@@ -451,9 +466,9 @@ mod tests {
         };
         refuse("axis z", &|d| d.variables[2].axes[0] = "z".into());
         refuse("no field h", &|d| d.variables[0].values = Values::Stored("h".into()));
-        refuse("1 maps of 6 values", &|d| d.variables[2].values = Values::Static(vec![0.0; 5]));
+        refuse("1 maps of 6 values", &|d| d.variables[2].values = Values::Static(vec![0.0; 5].into()));
         refuse("3 maps of 3 values", &|d| d.variables[3].values = Values::Series(vec![vec![0.0; 3]; 2]));
-        refuse("does not fit", &|d| d.variables[0].values = Values::Static(vec![0.0; 18]));
+        refuse("does not fit", &|d| d.variables[0].values = Values::Static(vec![0.0; 18].into()));
         refuse("no values", &|d| d.axes[0].values.clear());
         refuse("bed", &|d| d.variables[1].name = "bed".into());
         assert!(sound.write(&path, None).unwrap_err().to_string().contains("needs the store"));

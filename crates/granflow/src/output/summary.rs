@@ -94,6 +94,9 @@ pub struct Summary {
     /// Seconds on the clock.
     #[serde(deserialize_with = "number")]
     pub wall_seconds: f64,
+    /// Part of them in steps alone: the outputs, set-up and figures are beside or around them.
+    #[serde(deserialize_with = "number")]
+    pub stepping_seconds: f64,
     /// Cells times steps by seconds on the clock.
     #[serde(deserialize_with = "number")]
     pub cell_updates_per_second: f64,
@@ -175,6 +178,7 @@ pub(super) mod tests {
             runout: None,
             reach_angle: Some(f64::INFINITY),
             wall_seconds: 1.5,
+            stepping_seconds: 1.25,
             cell_updates_per_second: 1.6e6,
             threads: 2,
             version: "0.1.0".into(),
@@ -194,7 +198,7 @@ pub(super) mod tests {
             keys.join(", "),
             "title, model, scheme, cells, steps, time, stop_reason, stopping_time, mass_initial, mass_final, mass_in, \
              mass_out, mass_error, film_volume, max_speed_final, max_speed, runout, reach_angle, wall_seconds, \
-             cell_updates_per_second, threads, version, deposit_area, peak_thickness_max"
+             stepping_seconds, cell_updates_per_second, threads, version, deposit_area, peak_thickness_max"
         );
         for null in ["max_speed", "runout", "reach_angle", "deposit_area"] {
             assert!(text.contains(&format!("\"{null}\": null")), "{null}");

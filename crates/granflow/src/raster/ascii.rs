@@ -1,7 +1,7 @@
 //! ESRI ASCII grids: `ncols`, `nrows`, `xllcorner` or `xllcenter`, `yllcorner` or `yllcenter`, `cellsize`,
 //! `NODATA_value` (any case, any order), then the values from the north-west, row by row, lines of any length.
 
-use super::{Crs, Raster, RasterError, agreed, beside};
+use super::{Crs, Raster, RasterError, agreed, beside, turn};
 use std::path::Path;
 
 /// The value that means nodata where the header names none.
@@ -90,7 +90,8 @@ fn parse(path: &Path, bytes: &[u8]) -> Result<Raster, RasterError> {
     if values.len() != columns * rows {
         return Err(RasterError::Count { path: path.into(), rows, columns, found: values.len(), line: last });
     }
-    raster.values = values.chunks_exact(columns).rev().flatten().copied().collect();
+    turn(&mut values, columns);
+    raster.values = values;
     Ok(raster)
 }
 

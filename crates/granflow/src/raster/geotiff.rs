@@ -1,6 +1,6 @@
 //! GeoTIFF through the `geotiff-reader` and `geotiff-writer` crates.
 
-use super::{Crs, Raster, RasterError, agreed};
+use super::{Crs, Raster, RasterError, agreed, turn};
 use geotiff_reader::GeoTiffFile;
 use geotiff_writer::{Compression, GeoKeyValue, GeoTiffBuilder, GeoTransform, ModelType, Predictor};
 use ndarray::Array2;
@@ -49,14 +49,13 @@ pub(super) fn read(path: &Path, given: Option<&Crs>) -> Result<Raster, RasterErr
     let north_up = at.pixel_height < 0.0;
     let south = if north_up { at.origin_y - rows as f64 * height } else { at.origin_y };
     let crs = system(path, &file, given)?;
-    let values = samples(path, &file)?;
+    let mut values = samples(path, &file)?;
     if values.len() != columns * rows {
         return Err(error(&format!("{} values for {rows} rows of {columns}", values.len())));
     }
-    let values = match north_up {
-        true => values.chunks_exact(columns).rev().flatten().copied().collect(),
-        false => values,
-    };
+    if north_up {
+        turn(&mut values, columns);
+    }
     let raster = Raster { columns, rows, west: at.origin_x, south, cell, values, crs };
     if file.crs().model_type_enum() == ModelType::Geographic {
         return Err(RasterError::geographic(path, &raster));
@@ -156,13 +155,21 @@ impl Raster {
     /// # Errors
     /// [`RasterError::Write`].
     pub fn write_geotiff(&self, path: &Path) -> Result<(), RasterError> {
+        self.write_values(path, |cell| self.values[cell])
+    }
+
+    /// As [`Raster::write_geotiff`], with another value in each of its cells.
+    ///
+    /// # Errors
+    /// [`RasterError::Write`].
+    pub fn write_values(&self, path: &Path, value: impl Fn(usize) -> f64) -> Result<(), RasterError> {
         let error = |reason: String| RasterError::Write { path: path.into(), reason };
-        let value = |k: usize| {
+        let stored = |k: usize| {
             let (row, column) = (self.rows - 1 - k / self.columns, k % self.columns);
-            let value = self.values[row * self.columns + column];
+            let value = value(row * self.columns + column);
             if value.is_nan() { NODATA } else { value as f32 }
         };
-        let values = (0..self.values.len()).map(value).collect();
+        let values = (0..self.rows * self.columns).map(stored).collect();
         let image =
             Array2::from_shape_vec((self.rows, self.columns), values).map_err(|e| error(e.to_string()))?;
         let [columns, rows] = [self.columns, self.rows].map(u32::try_from);

@@ -60,11 +60,10 @@ impl Raster {
         target.values = if same && moved == 0.0 {
             self.values.clone()
         } else if target.cell >= MEAN_FROM * self.cell {
-            let (areas, sums) = self.overlap(&target);
             let half = 0.5 * target.cell * target.cell;
             let mean =
                 |(area, sum): (f64, f64)| if area < half * (1.0 - 1e-9) { f64::NAN } else { sum / area };
-            areas.into_iter().zip(sums).map(mean).collect()
+            self.overlap(&target).map(mean).collect()
         } else {
             let centre = |k: usize| (target.x(k % target.columns), target.y(k / target.columns));
             let value = |k: usize| {
@@ -77,13 +76,14 @@ impl Raster {
     }
 
     /// For each cell of `target` the area that cells with values cover \[m^2\], and the integral of the values over it.
-    pub(crate) fn overlap(&self, target: &Raster) -> (Vec<f64>, Vec<f64>) {
+    pub(crate) fn overlap(&self, target: &Raster) -> impl Iterator<Item = (f64, f64)> {
         let across = shares(self.west, self.cell, self.columns, target.west, target.cell, target.columns);
         let along = shares(self.south, self.cell, self.rows, target.south, target.cell, target.rows);
-        let cell = |k: usize| {
+        let (columns, rows) = (target.columns, target.rows);
+        let cell = move |k: usize| {
             let (mut area, mut sum) = (0.0, 0.0);
-            for &(row, height) in &along[k / target.columns] {
-                for &(column, width) in &across[k % target.columns] {
+            for &(row, height) in &along[k / columns] {
+                for &(column, width) in &across[k % columns] {
                     let value = self.values[row * self.columns + column];
                     if !value.is_nan() {
                         area += width * height;
@@ -93,7 +93,7 @@ impl Raster {
             }
             (area, sum)
         };
-        (0..target.rows * target.columns).map(cell).unzip()
+        (0..rows * columns).map(cell)
     }
 }
 
@@ -161,7 +161,7 @@ mod tests {
         let (x, y) = (moved.x(3), moved.y(4));
         assert!((moved.at(3, 4) - heap.sample(x, y)).abs() == 0.0);
         let wide = Raster { west: -3.0, south: -3.0, cell: 0.7, ..sampled(30, 30, |_, _| 0.0) };
-        let (areas, sums) = heap.overlap(&wide);
+        let (areas, sums): (Vec<f64>, Vec<f64>) = heap.overlap(&wide).unzip();
         assert!((areas.iter().sum::<f64>() - 100.0).abs() < 1e-10);
         assert!((sums.iter().sum::<f64>() - heap.values.iter().sum::<f64>()).abs() < 1e-10);
     }

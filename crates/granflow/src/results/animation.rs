@@ -11,7 +11,6 @@ use crate::output;
 use crate::output::figures::{
     Axis, Colours, Curve, Figure, FigureError, Fill, HeatMap, Map, Overlay, Picture, Profiles, Style, short,
 };
-use crate::output::frames::Frames;
 use crate::output::whole_file;
 use rayon::prelude::*;
 use std::io;
@@ -25,7 +24,7 @@ const STAY: u16 = 3;
 
 /// Draw and write the film of a run.
 pub(super) fn write(run: &Finished, story: &Story) -> Result<PathBuf, FilesError> {
-    let mut frames = Frames::open(run.frames.path())?.0;
+    let mut frames = run.frames.again()?;
     let times = frames.times().to_vec();
     let names: &[&str] =
         if run.plane.as_table().is_some() { &["standing_layer", "rolling_layer"] } else { &["thickness"] };
@@ -90,7 +89,7 @@ pub(super) fn write(run: &Finished, story: &Story) -> Result<PathBuf, FilesError
 
 /// What all pictures share.
 struct Scene<'a> {
-    story: &'a Story,
+    story: &'a Story<'a>,
     ground: Option<Ground<'a>>,
     window: Option<Window>,
     /// Greatest thickness that the colours or the axis tell apart.
@@ -106,7 +105,7 @@ fn pair(fields: &[Vec<f64>]) -> (&[f64], &[f64]) {
 }
 
 impl<'a> Scene<'a> {
-    fn of(run: &Finished, story: &'a Story) -> Scene<'a> {
+    fn of(run: &Finished, story: &'a Story<'a>) -> Scene<'a> {
         let peak = run.map("peak_thickness");
         let all = || story.series("thickness").iter().flatten().copied();
         let most = match peak {
@@ -115,8 +114,13 @@ impl<'a> Scene<'a> {
             None => all().fold(0.0, f64::max),
         };
         let chute = matches!(story.plane.under, Under::Chute);
-        let window = (!story.plane.y.is_empty() && chute)
-            .then(|| Window::around(story, peak.unwrap_or(&story.plane.release)));
+        let window = (!story.plane.y.is_empty() && chute).then(|| match peak {
+            Some(peak) => Window::around(story, peak),
+            None => {
+                let cells = story.plane.x.len() * story.plane.y.len();
+                Window::around(story, &story.plane.release.dense(cells))
+            }
+        });
         let top = if most > 0.0 { most } else { 1.0 };
         Scene { story, ground: Ground::of(story), window, top, ranges: Ranges::default() }
     }

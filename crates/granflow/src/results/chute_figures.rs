@@ -11,7 +11,7 @@ const FOOTPRINT: f64 = 0.01;
 const MARGIN: f64 = 0.1;
 
 /// Profiles and space-time of a one-dimensional run.
-pub(super) fn line(story: &Story) -> Vec<Drawing<'_>> {
+pub(super) fn line<'a>(story: &'a Story<'a>) -> Vec<Drawing<'a>> {
     let x = &story.plane.x;
     let (thickness, velocity) = (story.series("thickness"), story.series("velocity_x"));
     let profile = |name, caption: &str, label, series: &[Vec<f64>], filled: bool| {
@@ -111,7 +111,7 @@ impl Window {
 }
 
 /// The maps of a run on a plane.
-pub(super) fn plane(story: &Story) -> Vec<Drawing<'_>> {
+pub(super) fn plane<'a>(story: &'a Story<'a>) -> Vec<Drawing<'a>> {
     let thickness = story.series("thickness");
     let footprint = story.map("peak_thickness").or(thickness.first().map(Vec::as_slice)).unwrap_or(&[]);
     let mut drawings = Vec::new();

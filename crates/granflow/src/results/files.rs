@@ -6,7 +6,6 @@ use super::{
 };
 use crate::case::FileKind;
 use crate::output::figures::FigureError;
-use crate::output::frames::Frames;
 use crate::output::report::{self, Report};
 use crate::output::summary::StopReason;
 use crate::output::{self, csv, vtk};
@@ -46,7 +45,7 @@ pub enum FilesError {
     },
 }
 
-impl Story {
+impl Story<'_> {
     /// Draw the standard figures into `folder`.
     ///
     /// # Errors
@@ -64,6 +63,25 @@ impl Story {
 }
 
 impl Finished {
+    /// Write `result.nc`, `summary.json` and every kind of file that the case asks for, beside each other; returns the paths
+    /// of the last.
+    ///
+    /// # Errors
+    /// [`FilesError`] naming the file; the others are written nevertheless.
+    pub fn write(&self, command: &str) -> Result<Vec<PathBuf>, FilesError> {
+        // A thread of its own: it mostly waits for the disk, and the pool's draw meanwhile.
+        let (result, files) = std::thread::scope(|scope| {
+            let result = scope.spawn(|| {
+                self.write_result(command)?;
+                self.summary.write(&self.directory.join("summary.json"))
+            });
+            let files = self.write_files();
+            (result.join().unwrap_or_else(|panic| std::panic::resume_unwind(panic)), files)
+        });
+        result?;
+        files
+    }
+
     /// Write every kind of file that the case asks for, beyond `result.nc`, `mass.csv` and `summary.json`; returns their
     /// paths.
     ///
@@ -74,19 +92,22 @@ impl Finished {
         let mut written = Vec::new();
         let drawn = asked(FileKind::Figures) || asked(FileKind::Report);
         let story = (drawn || asked(FileKind::Animation)).then(|| Story::of(self)).transpose()?;
-        let (figures, rasters) = rayon::join(
-            || match story.as_ref().filter(|_| drawn) {
-                Some(story) => story.draw(&self.figures()),
-                None => Ok(Vec::new()),
+        let ((figures, rasters), outlines) = rayon::join(
+            || {
+                rayon::join(
+                    || match story.as_ref().filter(|_| drawn) {
+                        Some(story) => story.draw(&self.figures()),
+                        None => Ok(Vec::new()),
+                    },
+                    || if asked(FileKind::Geotiff) { rasters::write(self) } else { Ok(Vec::new()) },
+                )
             },
-            || if asked(FileKind::Geotiff) { rasters::write(self) } else { Ok(Vec::new()) },
+            || if asked(FileKind::Vector) { outlines::write(self) } else { Ok(None) },
         );
         let figures = figures?;
         written.extend(figures.iter().map(|figure| figure.path.clone()));
         written.extend(rasters?);
-        if asked(FileKind::Vector) {
-            written.extend(outlines::write(self)?);
-        }
+        written.extend(outlines?);
         if asked(FileKind::Csv) {
             written.extend(self.write_csv()?);
         }
@@ -105,7 +126,7 @@ impl Finished {
     /// `profiles.csv`: every instant of a line; `maps.csv`: the summary maps of a plane, a line per cell. What lies on the
     /// nodes of a table goes to `profiles_node.csv` and `maps_node.csv`.
     fn write_csv(&self) -> Result<Vec<PathBuf>, output::Error> {
-        let mut frames = Frames::open(self.frames.path())?.0;
+        let mut frames = self.frames.again()?;
         let mut written = Vec::new();
         let mut places = vec![("", &self.plane.x, &self.plane.y)];
         let (table, series) = (self.plane.as_table(), self.plane.series());
@@ -143,7 +164,7 @@ impl Finished {
 
     /// `result.pvd` and `vtk/frame_0000.vti`, ...
     fn write_vtk(&self) -> Result<Vec<PathBuf>, output::Error> {
-        let mut frames = Frames::open(self.frames.path())?.0;
+        let mut frames = self.frames.again()?;
         let spacing = |c: &[f64]| c.get(1).map(|second| second - c[0]);
         let (x, y, table) = (&self.plane.x, &self.plane.y, self.plane.as_table());
         let dx = spacing(x).unwrap_or(1.0);

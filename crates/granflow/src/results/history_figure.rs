@@ -6,7 +6,7 @@ use crate::output::figures::{Axis, Curve, Figure, History, HistoryPanel, Style};
 use crate::output::ledger::Entry;
 
 /// The history, from the ledger; none where that has fewer than two lines.
-pub(super) fn drawing(story: &Story) -> Option<Drawing<'_>> {
+pub(super) fn drawing<'a>(story: &'a Story<'a>) -> Option<Drawing<'a>> {
     if story.ledger.len() < 2 {
         return None;
     }
@@ -42,7 +42,7 @@ pub(super) fn drawing(story: &Story) -> Option<Drawing<'_>> {
 
 /// The books of a sandpile: what lies on the table, what was poured, what fell over which side; none where the ledger has
 /// fewer than two lines.
-pub(super) fn books(story: &Story) -> Option<Drawing<'_>> {
+pub(super) fn books<'a>(story: &'a Story<'a>) -> Option<Drawing<'a>> {
     if story.ledger.len() < 2 {
         return None;
     }

@@ -42,7 +42,7 @@ impl<'a> Ground<'a> {
         Some(Ground {
             extent,
             bed: &raster.values,
-            release: outline(release, release_threshold(release)),
+            release: outline(&release.dense(raster.values.len()), release_threshold(release)),
             footprint: story.map("peak_thickness").map_or(Vec::new(), |map| outline(map, REACHED)),
             path: path(story),
         })
@@ -99,7 +99,7 @@ pub(super) fn top(values: impl Iterator<Item = f64>) -> f64 {
 }
 
 /// All figures of a run on a mountain.
-pub(super) fn mountain(story: &Story) -> Vec<Drawing<'_>> {
+pub(super) fn mountain<'a>(story: &'a Story<'a>) -> Vec<Drawing<'a>> {
     let (Some(ground), Some(peak)) = (Ground::of(story), story.map("peak_thickness")) else {
         return Vec::new();
     };

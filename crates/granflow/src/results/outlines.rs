@@ -5,6 +5,7 @@ use super::path::REACHED;
 use crate::output;
 use crate::output::outlines::{self, Lattice, Outline, contour};
 use crate::raster::Raster;
+use crate::release::Sparse;
 use geo::{Area, MultiPolygon};
 use std::path::PathBuf;
 
@@ -14,8 +15,8 @@ pub(super) fn lattice(raster: &Raster) -> Lattice {
 }
 
 /// The thickness whose outline is that of the release: that of the other outlines, less where all is thinner.
-pub(super) fn release_threshold(release: &[f64]) -> f64 {
-    let most = release.iter().fold(0.0_f64, |most, v| most.max(*v));
+pub(super) fn release_threshold(release: &Sparse) -> f64 {
+    let most = release.most();
     if most > 0.0 { REACHED.min(0.5 * most) } else { REACHED }
 }
 
@@ -28,15 +29,17 @@ pub(super) fn rings(area: &MultiPolygon<f64>, least: f64) -> Vec<Vec<[f64; 2]>> 
 /// Write `outlines.geojson` of a run on a mountain.
 pub(super) fn write(run: &Finished) -> Result<Option<PathBuf>, output::Error> {
     let Some(raster) = run.plane.mountain() else { return Ok(None) };
-    let release = Some(("release", run.plane.release.as_slice(), release_threshold(&run.plane.release)));
-    let others = ["deposit", "peak_thickness"].map(|name| Some((name, run.map(name)?, REACHED)));
-    let outline = |(name, map, threshold): (&str, &[f64], f64)| Outline {
+    let release = &run.plane.release;
+    let outline = |name: &str, map: &[f64], threshold: f64| Outline {
         name: name.to_owned(),
         threshold,
         unit: "m".to_owned(),
         area: contour(map, lattice(raster), threshold),
     };
-    let all: Vec<Outline> = [release].into_iter().chain(others).flatten().map(outline).collect();
+    let mut all = vec![outline("release", &release.dense(raster.values.len()), release_threshold(release))];
+    for name in ["deposit", "peak_thickness"] {
+        all.extend(run.map(name).map(|map| outline(name, map, REACHED)));
+    }
     let path = run.directory.join("outlines.geojson");
     outlines::write(&path, &all, raster.crs.as_ref().and_then(|crs| crs.epsg))?;
     Ok(Some(path))

@@ -31,8 +31,9 @@ pub(super) fn path(story: &Story) -> Option<PathLine> {
     let (x, y) = (&story.plane.x, &story.plane.y);
     let columns = x.len();
     let release = &story.plane.release;
-    let least = REACHED.min(0.5 * release.iter().fold(0.0_f64, |most, v| most.max(*v)));
-    let top = (0..bed.len()).filter(|&k| release[k] > least).max_by(|&a, &b| bed[a].total_cmp(&bed[b]))?;
+    let least = REACHED.min(0.5 * release.most());
+    let released = release.iter().filter(|(_, thickness)| *thickness > least).map(|(cell, _)| cell);
+    let top = released.max_by(|&a, &b| bed[a].total_cmp(&bed[b]))?;
     let apart = |a: usize, b: usize| (x[a % columns] - x[b % columns]).hypot(y[a / columns] - y[b / columns]);
     let far = (0..bed.len())
         .filter(|&k| thickness[k] > REACHED && bed[k].is_finite())

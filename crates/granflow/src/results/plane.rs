@@ -1,8 +1,10 @@
 //! Where a run took place: its cells, and what lies under them.
 
+use crate::grid::Grid;
 use crate::output::frames::Field;
 use crate::raster::Raster;
-use crate::setup::Scene;
+use crate::release::Sparse;
+use std::sync::Arc;
 
 /// Where the cells lie, and what lies under them.
 #[derive(Debug, Clone)]
@@ -14,7 +16,7 @@ pub struct Plane {
     /// What lies under the cells, and with it the model.
     pub under: Under,
     /// Released thickness normal to the bed on a mountain, thickness at the start on a chute; empty on a table.
-    pub release: Vec<f64>,
+    pub release: Sparse,
 }
 
 /// What lies under the cells.
@@ -23,7 +25,7 @@ pub enum Under {
     /// A chute in the papers' scaling.
     Chute,
     /// A mountain; lengths are metres, times seconds.
-    Mountain(Raster),
+    Mountain(Arc<Raster>),
     /// The table of a growing sandpile, in the papers' scaling.
     Table(Table),
 }
@@ -48,29 +50,21 @@ pub struct Table {
 }
 
 impl Plane {
-    /// The cells of a scene, from the lower corner, the size and the number of cells per axis.
+    /// The cells of a grid, with what lies under them and what was released.
     #[must_use]
-    pub fn of(scene: &Scene, origin: &[f64], size: &[f64], cells: &[usize]) -> Plane {
-        let centres =
-            |k: usize| (0..cells[k]).map(|i| origin[k] + (i as f64 + 0.5) * size[k]).collect::<Vec<f64>>();
-        let (under, release) = match scene {
-            Scene::Line(sand) => return sand.plane(),
-            Scene::Table(sand) => return sand.plane(),
-            Scene::Chute { initial, .. } => (Under::Chute, initial.thickness.clone()),
-            Scene::Mountain { terrain, release, .. } => {
-                let normal = |(k, volume): (usize, &f64)| volume * terrain.cosine(k);
-                let release = release.iter().enumerate().map(normal).collect();
-                (Under::Mountain(terrain.bed.clone()), release)
-            }
+    pub fn of<const D: usize>(grid: &Grid<D>, under: Under, release: Sparse) -> Plane {
+        let centres = |axis: usize| {
+            let along = |i: usize| grid.centre([i; D])[axis];
+            (0..grid.cells[axis]).map(along).collect::<Vec<f64>>()
         };
-        Plane { x: centres(0), y: if cells.len() > 1 { centres(1) } else { Vec::new() }, under, release }
+        Plane { x: centres(0), y: if D > 1 { centres(1) } else { Vec::new() }, under, release }
     }
 
     /// A table with these cell centres.
     #[must_use]
     pub fn table(x: Vec<f64>, y: Vec<f64>, table: Table) -> Plane {
         debug_assert!(table.fits(&x, &y), "the parts of the table differ in length");
-        Plane { x, y, under: Under::Table(table), release: Vec::new() }
+        Plane { x, y, under: Under::Table(table), release: Sparse::default() }
     }
 
     /// The elevation model, on a mountain.
@@ -161,13 +155,18 @@ impl Table {
 
     /// NaN stands in cells beside the table and at nodes that touch none of its cells.
     pub fn blank(&self, field: &mut [f64]) {
+        self.blank_part(field.len(), 0, field);
+    }
+
+    /// [`Table::blank`] of a part of a field of `length` numbers that begins with number `from`.
+    pub(crate) fn blank_part(&self, length: usize, from: usize, part: &mut [f64]) {
         let [columns, rows] = self.cells();
-        if field.len() == columns * rows {
-            let beside = field.iter_mut().zip(&self.inside).filter(|(_, inside)| !**inside);
+        if length == columns * rows {
+            let beside = part.iter_mut().zip(&self.inside[from..]).filter(|(_, inside)| !**inside);
             return beside.for_each(|(value, _)| *value = f64::NAN);
         }
         let wide = self.x_node.len();
-        for (k, value) in field.iter_mut().enumerate() {
+        for (k, value) in (from..).zip(part) {
             let (i, j) = (k % wide, k / wide);
             let below = if self.y_node.is_empty() { Some(0) } else { j.checked_sub(1) };
             let touches = [

@@ -14,14 +14,13 @@ pub(super) fn write(run: &Finished) -> Result<Vec<PathBuf>, RasterError> {
     let write = |name: &&str| -> Option<Result<PathBuf, RasterError>> {
         let map = run.map(name)?;
         let thickness = matches!(*name, "peak_thickness" | "deposit");
-        let value = |(&value, ground): (&f64, &f64)| match value {
-            _ if ground.is_nan() => f64::NAN,
+        let value = |cell: usize| match map[cell] {
+            _ if bed.values[cell].is_nan() => f64::NAN,
             value if thickness && value < run.film => 0.0,
             value => value,
         };
-        let raster = bed.with_values(map.iter().zip(&bed.values).map(value).collect());
         let path = folder.join(format!("{name}.tif"));
-        Some(raster.write_geotiff(&path).map(|()| path))
+        Some(bed.write_values(&path, value).map(|()| path))
     };
     MAPS.par_iter().filter_map(write).collect()
 }

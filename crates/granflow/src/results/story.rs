@@ -2,16 +2,18 @@
 
 use super::{FilesError, Finished, Plane, Table, Under};
 use crate::output;
-use crate::output::frames::Frames;
 use crate::output::ledger::{Entry, Ledger};
 use crate::output::summary::Summary;
 use crate::raster::Raster;
+use crate::release::Sparse;
 use netcdf_reader::{NcFile, NcSliceInfo, NcSliceInfoElem};
+use std::borrow::Cow;
 use std::path::Path;
+use std::sync::Arc;
 
 /// A run as its figures see it.
 #[derive(Debug, Clone)]
-pub struct Story {
+pub struct Story<'a> {
     /// The case's title.
     pub title: String,
     /// Scheme, why and when the run ended, in one line.
@@ -24,7 +26,7 @@ pub struct Story {
     /// `standing_layer` and `rolling_layer`.
     pub series: Vec<(&'static str, Vec<Vec<f64>>)>,
     /// The maps by name, as in [`Finished::maps`].
-    pub maps: Vec<(String, Vec<f64>)>,
+    pub maps: Vec<(&'static str, Cow<'a, [f64]>)>,
     /// The ledger; empty where it is not known.
     pub ledger: Vec<Entry>,
 }
@@ -56,14 +58,14 @@ fn subtitle(scheme: &str, reason: &str, time: Option<f64>, terrain: bool) -> Str
     }
 }
 
-impl Story {
+impl<'r> Story<'r> {
     /// The story of a run that has just ended.
     ///
     /// # Errors
     /// [`FilesError`] if the frames cannot be read.
-    pub fn of(run: &Finished) -> Result<Story, FilesError> {
+    pub fn of(run: &'r Finished) -> Result<Story<'r>, FilesError> {
         let plane = run.plane.clone();
-        let mut frames = Frames::open(run.frames.path())?.0;
+        let mut frames = run.frames.again()?;
         let kept = instants(&plane, frames.times().len());
         let mut series = Vec::new();
         for &name in shown(&plane) {
@@ -83,7 +85,7 @@ impl Story {
             ),
             times: kept.iter().map(|&frame| frames.times()[frame]).collect(),
             series,
-            maps: run.maps.iter().map(|(name, map)| ((*name).to_owned(), map.clone())).collect(),
+            maps: run.maps.iter().map(|(name, map)| (*name, map.into())).collect(),
             ledger: run.ledger.clone(),
             plane,
         })
@@ -93,7 +95,7 @@ impl Story {
     ///
     /// # Errors
     /// [`FilesError`] naming the file that is missing, damaged, or no result of granflow.
-    pub fn read(path: &Path) -> Result<Story, FilesError> {
+    pub fn read(path: &Path) -> Result<Story<'static>, FilesError> {
         let foreign = |problem: String| FilesError::Foreign { path: path.into(), problem };
         std::fs::File::open(path).map_err(|source| FilesError::Missing { path: path.into(), source })?;
         let file =
@@ -127,12 +129,12 @@ impl Story {
                 wall_y: faces("wall_y")?,
             })
         } else if has("bed") {
-            Under::Mountain(raster(&x, &y, whole("bed")?).map_err(foreign)?)
+            Under::Mountain(Arc::new(raster(&x, &y, whole("bed")?).map_err(foreign)?))
         } else {
             Under::Chute
         };
         let times = whole("time")?;
-        let mut plane = Plane { x, y, under, release: Vec::new() };
+        let mut plane = Plane { x, y, under, release: Sparse::default() };
         let kept = instants(&plane, times.len());
         let read = |name: &str| -> Result<Vec<Vec<f64>>, FilesError> {
             let all = NcSliceInfoElem::Slice { start: 0, end: u64::MAX, step: 1 };
@@ -151,7 +153,7 @@ impl Story {
         }
         let mut maps = Vec::new();
         for name in super::MAPS.into_iter().filter(|name| has(name)) {
-            maps.push((name.to_owned(), whole(name)?));
+            maps.push((name, whole(name)?.into()));
         }
         let beside = |name: &str| Some(path.with_file_name(name)).filter(|path| path.exists());
         let ledger = match beside("mass.csv") {
@@ -163,7 +165,7 @@ impl Story {
         let first = |name: &str| {
             series.iter().find(|(own, _)| *own == name).and_then(|(_, series)| series.first()).cloned()
         };
-        plane.release = first("thickness").unwrap_or_default();
+        plane.release = Sparse::of(first("thickness").unwrap_or_default());
         if let Under::Table(table) = &mut plane.under {
             table.inside = first("rolling_layer").unwrap_or_default().iter().map(|v| !v.is_nan()).collect();
             if !table.fits(&plane.x, &plane.y) {
@@ -190,11 +192,11 @@ impl Story {
     /// A map by its name.
     #[must_use]
     pub fn map(&self, name: &str) -> Option<&[f64]> {
-        self.maps.iter().find(|(known, _)| known == name).map(|(_, values)| values.as_slice())
+        self.maps.iter().find(|(known, _)| *known == name).map(|(_, values)| values.as_ref())
     }
 
     /// Unit of a quantity: `si` on a mountain, none in the papers' scaling.
-    pub(super) fn unit<'a>(&self, si: &'a str) -> &'a str {
+    pub(super) fn unit<'s>(&self, si: &'s str) -> &'s str {
         if self.plane.is_terrain() { si } else { "" }
     }
 }

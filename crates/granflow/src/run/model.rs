@@ -1,11 +1,12 @@
 //! What the files of a run show of each model, and how its sources flow.
 
 use crate::hadeler_kuttler::scheme::HadelerKuttler;
+use crate::hadeler_kuttler::{Ground, Pile};
 use crate::output::summary::Summary;
 use crate::results::Plane;
 use crate::savage_hutter::Flow;
 use crate::savage_hutter::ground::Bed;
-use crate::scheme::Scheme;
+use crate::scheme::{Cell, Scheme};
 use crate::setup::Sand;
 use crate::simulation::Simulation;
 
@@ -17,8 +18,8 @@ pub(super) trait Model<const D: usize>: Scheme<D, f64> + Sized {
     /// Are peaks and times of every cell kept?
     const PEAKS: bool;
 
-    /// The fields of a frame, in the order of [`Plane::series`].
-    fn frame(simulation: &Simulation<D, Self>, plane: &Plane) -> Vec<Vec<f64>>;
+    /// As many numbers of a field of a frame as `values` holds, from number `from` on; fields as in [`Plane::series`].
+    fn fill(simulation: &Simulation<D, Self>, plane: &Plane, field: usize, from: usize, values: &mut [f64]);
     /// The maps of the end, beyond peaks and times.
     fn maps(simulation: &mut Simulation<D, Self>, sand: Option<&Sand<D>>) -> Maps;
     /// The figures of the summary that only this model has, and those that it has not.
@@ -34,26 +35,24 @@ where
 {
     const PEAKS: bool = true;
 
-    fn frame(simulation: &Simulation<D, S>, plane: &Plane) -> Vec<Vec<f64>> {
-        let mut series = vec![Vec::with_capacity(simulation.grid().count()); plane.series().len()];
-        for number in 0..simulation.grid().count() {
-            let cell = simulation.cell(simulation.grid().index(number));
-            let u = cell.state.velocity();
-            let thickness = cell.ground.thickness(cell.state.h);
-            series[0].push(thickness);
-            for k in 0..D {
-                series[1 + k].push(u[k]);
+    fn fill(simulation: &Simulation<D, S>, plane: &Plane, field: usize, from: usize, values: &mut [f64]) {
+        let columns = simulation.grid().cells[0];
+        match field {
+            0 => simulation.fill(columns, from, values, thickness),
+            k if k <= D => simulation.fill(columns, from, values, |cell| cell.state.velocity()[k - 1]),
+            k if k == D + 1 => {
+                simulation.fill(columns, from, values, |cell| cell.ground.thickness(1.0) * thickness(cell));
+                let bed = plane.bed().unwrap_or_default().iter().skip(from);
+                values.iter_mut().zip(bed).for_each(|(value, bed)| *value += bed);
             }
-            if let Some(bed) = plane.bed() {
-                let cos = cell.ground.thickness(1.0);
-                series[1 + D].push(bed[number] + cos * thickness);
-                series[2 + D].push(cell.ground.square(u).sqrt());
+            _ => {
+                simulation
+                    .fill(columns, from, values, |cell| cell.ground.square(cell.state.velocity()).sqrt());
             }
         }
-        series
     }
     fn maps(simulation: &mut Simulation<D, S>, _sand: Option<&Sand<D>>) -> Maps {
-        let deposit = simulation.collect(|cell| cell.ground.thickness(cell.state.h));
+        let deposit = simulation.map(thickness);
         vec![("deposit", deposit), ("yield_margin", simulation.margins())]
     }
     fn sum_up(simulation: &Simulation<D, S>, _sand: Option<&Sand<D>>, summary: &mut Summary) {
@@ -68,14 +67,16 @@ where
 impl<const D: usize> Model<D> for HadelerKuttler {
     const PEAKS: bool = false;
 
-    fn frame(simulation: &Simulation<D, Self>, plane: &Plane) -> Vec<Vec<f64>> {
-        let table = plane.as_table();
-        let mut u = simulation.collect(|cell| cell.state.u);
-        let mut v = in_cells(simulation, |cell| cell.state.v);
-        for layer in [&mut u, &mut v] {
-            table.iter().for_each(|table| table.blank(layer));
+    fn fill(simulation: &Simulation<D, Self>, plane: &Plane, field: usize, from: usize, values: &mut [f64]) {
+        let nodes = simulation.grid().cells[0];
+        match field {
+            0 => simulation.fill(nodes, from, values, |cell| cell.state.u),
+            _ => simulation.fill(nodes - 1, from, values, |cell| cell.state.v),
         }
-        vec![u, v]
+        if let Some(table) = plane.as_table() {
+            let length = if field == 0 { table.nodes() } else { table.inside.len() };
+            table.blank_part(length, from, values);
+        }
     }
     fn maps(simulation: &mut Simulation<D, Self>, sand: Option<&Sand<D>>) -> Maps {
         let mut maps = vec![("source", in_cells(simulation, |cell| cell.ground.source.iter().sum()))];
@@ -116,15 +117,18 @@ impl<const D: usize> Model<D> for HadelerKuttler {
     }
 }
 
+/// Thickness normal to the bed.
+fn thickness<const D: usize, G: Bed<D, f64>>(cell: &Cell<Flow<D, f64>, G>) -> f64 {
+    cell.ground.thickness(cell.state.h)
+}
+
 /// A value of every cell of a table, of which the grid of the scheme has one more along each axis.
 fn in_cells<const D: usize>(
     simulation: &Simulation<D, HadelerKuttler>,
-    value: impl Fn(
-        &crate::scheme::Cell<crate::hadeler_kuttler::Pile<f64>, crate::hadeler_kuttler::Ground<D, f64>>,
-    ) -> f64,
+    value: impl Fn(&Cell<Pile<f64>, Ground<D, f64>>) -> f64,
 ) -> Vec<f64> {
-    let grid = simulation.grid();
-    let within = |index: &[usize; D]| (0..D).all(|k| index[k] + 1 < grid.cells[k]);
-    let cells = (0..grid.count()).map(|number| grid.index(number)).filter(within);
-    cells.map(|index| value(&simulation.cell(index))).collect()
+    let cells = simulation.grid().cells.map(|nodes| nodes - 1);
+    let mut values = vec![0.0; cells.iter().product()];
+    simulation.fill(cells[0], 0, &mut values, value);
+    values
 }

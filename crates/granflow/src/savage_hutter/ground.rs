@@ -2,6 +2,7 @@
 
 use crate::real::{Real, dot, each, unroll};
 use crate::scheme::{Parts, parts};
+use crate::terrain::Terrain as Mountain;
 
 /// The neighbour's place along an axis.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -235,19 +236,16 @@ impl<const D: usize, R: Real> Terrain<D, R> {
 }
 
 impl Terrain<2, f64> {
-    /// The ground of every cell of a mountain under `gravity` \[m/s^2\], x fastest, the first row in the south.
-    pub fn cells(mountain: &crate::terrain::Terrain, gravity: f64) -> Vec<Self> {
-        let bed = &mountain.bed;
-        let cell = |number: usize| {
-            let (level, slope) = (bed.values[number], mountain.gradient[number]);
-            if level.is_nan() {
-                return Self::nothing(gravity);
-            }
-            let cos = mountain.cosine(number);
-            let [xx, xy, yy] = mountain.hessian[number].map(|second| cos * second);
-            Terrain { level, slope, cos, curvature: [[xx, xy], [xy, yy]], gravity }
-        };
-        (0..bed.values.len()).map(cell).collect()
+    /// The ground of a cell of a mountain under `gravity` \[m/s^2\], by column and row, the first row in the south.
+    pub fn at(mountain: &Mountain, gravity: f64, [column, row]: [usize; 2]) -> Self {
+        let level = mountain.bed.at(column, row);
+        if level.is_nan() {
+            return Self::nothing(gravity);
+        }
+        let fit = mountain.fit([column, row]);
+        let cos = fit.cosine();
+        let [xx, xy, yy] = fit.hessian.map(|second| cos * second);
+        Terrain { level, slope: fit.gradient, cos, curvature: [[xx, xy], [xy, yy]], gravity }
     }
 }
 

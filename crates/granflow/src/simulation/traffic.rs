@@ -1,6 +1,7 @@
-//! What a step asks of the memory, at least.
+//! What a run takes of the memory, and what a step asks of it at least.
 
 use super::Simulation;
+use crate::observe::Maps;
 use crate::scheme::{Parts, Scheme};
 
 /// Bytes a cell and step that pass between memory and caches if every number is fetched and brought back once a stage.
@@ -24,6 +25,11 @@ impl Traffic {
 }
 
 impl<const D: usize, S: Scheme<D, f64>> Simulation<D, S> {
+    /// Bytes that a cell takes while a run computes: its state now and next, its ground, and the maps if they are kept.
+    pub fn bytes_per_cell(maps: bool) -> usize {
+        let numbers = 2 * S::State::COUNT + S::Ground::COUNT;
+        numbers * size_of::<f64>() + if maps { Maps::BYTES_PER_CELL } else { 0 }
+    }
     /// What a step asks of the memory where every tile is awake and no maps are kept.
     pub fn traffic(&self) -> Traffic {
         let bytes = |numbers: usize| (numbers * size_of::<f64>()) as f64;

@@ -204,9 +204,9 @@ pub(super) fn on_terrain(second: bool, extent: Extent) -> Begun<2, Balanced<Law,
         values: (0..sheet.count()).map(height).collect(),
         crs: None,
     };
-    let grounds = ground::Terrain::cells(&Terrain::new(bed, Curvature::Length(3.0 * sheet.size[0])), 1.0);
+    let terrain = Terrain::new(bed, Curvature::Length(3.0 * sheet.size[0]));
     let (scheme, stages) = balanced(second);
-    let ground = |[i, j]: [usize; 2]| grounds[j * extent.cells + i];
+    let ground = move |cell| ground::Terrain::at(&terrain, 1.0, cell);
     let start = |index| cap(&sheet, extent, index);
     Begun::new(Simulation::new(scheme, sheet, stages, COURANT, ground, start), extent.all())
 }

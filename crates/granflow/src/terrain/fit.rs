@@ -3,64 +3,35 @@
 //! Sums take mirrored cells in pairs, so that a mirrored bed gives the mirrored result bit for bit.
 
 use crate::raster::Raster;
-use rayon::prelude::*;
 
 /// A pivot below this share of its diagonal entry means that the cells do not determine the coefficient.
 const DEGENERATE: f64 = 1e-3;
 
 /// First and second derivatives of the bed at a cell.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
-pub(super) struct Fit {
-    /// (b_x, b_y)
+pub struct Fit {
+    /// Gradient (b_x, b_y).
     pub gradient: [f64; 2],
-    /// (b_xx, b_xy, b_yy) in 1/m
+    /// Hessian (b_xx, b_xy, b_yy) \[1/m\].
     pub hessian: [f64; 3],
 }
 
-/// The fit of every cell in windows of half-width `m`; zero at nodata cells.
-pub(super) fn derivatives(bed: &Raster, m: usize) -> Vec<Fit> {
-    let (columns, rows) = (bed.columns, bed.rows);
-    let full = Full::new(m, bed.cell);
-    let mut fits = vec![Fit::default(); bed.values.len()];
-    let whole = |k: usize, count: usize| k >= m && k + m < count;
-    fits.par_chunks_mut(columns).enumerate().for_each(|(row, fits)| {
-        let sums = if whole(row, rows) { column_sums(bed, row, m) } else { Vec::new() };
-        for (column, fit) in fits.iter_mut().enumerate() {
-            if bed.values[row * columns + column].is_nan() {
-                continue;
-            }
-            let regular =
-                (!sums.is_empty() && whole(column, columns)).then(|| full.fit(bed, &sums, column, row));
-            *fit = match regular {
-                Some(fit) if fit.is_number() => fit,
-                _ => ragged(bed, column, row, m),
-            };
-        }
-    });
-    fits
-}
-
 impl Fit {
+    /// Cosine of the slope, c = 1 / sqrt(1 + |grad b|^2).
+    pub fn cosine(&self) -> f64 {
+        let [x, y] = self.gradient;
+        1.0 / (1.0 + (x * x + y * y)).sqrt()
+    }
+
     fn is_number(&self) -> bool {
         (self.gradient.iter().sum::<f64>() + self.hessian.iter().sum::<f64>()).is_finite()
     }
 }
 
-/// Sums of 2 m + 1 cells of a column around `row`, for every column.
-fn column_sums(bed: &Raster, row: usize, m: usize) -> Vec<f64> {
-    let line = |row: usize| &bed.values[row * bed.columns..][..bed.columns];
-    let mut sums = line(row).to_vec();
-    for v in 1..=m {
-        for (sum, (above, below)) in sums.iter_mut().zip(line(row + v).iter().zip(line(row - v))) {
-            *sum += above + below;
-        }
-    }
-    sums
-}
-
 /// Windows without a gap: 1, u, v, u v and the centred squares p(u) = u^2 - m (m + 1)/3, p(v) are orthogonal on them,
 /// hence each coefficient is one weighted sum.
-struct Full {
+#[derive(Debug, Clone)]
+pub(super) struct Windows {
     m: usize,
     /// 1 / (sum of u^2 over the window * cell)
     first: f64,
@@ -72,24 +43,39 @@ struct Full {
     squares: Vec<f64>,
 }
 
-impl Full {
-    fn new(m: usize, cell: f64) -> Full {
+impl Windows {
+    /// Windows of half-width `m`, of cells of this length.
+    pub fn new(m: usize, cell: f64) -> Windows {
         let (count, mean) = ((2 * m + 1) as f64, (m * (m + 1)) as f64 / 3.0);
         let squares: Vec<f64> = (0..=m).map(|u| (u * u) as f64 - mean).collect();
         let line: f64 = (1..=m).map(|u| (2 * u * u) as f64).sum();
         let square = squares[0] * squares[0] + 2.0 * squares[1..].iter().map(|p| p * p).sum::<f64>();
         let area = cell * cell;
         let (first, mixed) = (1.0 / (count * line * cell), 1.0 / (line * line * area));
-        Full { m, first, second: 2.0 / (count * square * area), mixed, squares }
+        Windows { m, first, second: 2.0 / (count * square * area), mixed, squares }
     }
 
-    /// The fit at a cell, not a number where the window holds nodata; `columns` are the [`column_sums`] of its row.
-    fn fit(&self, bed: &Raster, columns: &[f64], column: usize, row: usize) -> Fit {
+    /// The fit at a cell, zero at nodata.
+    pub fn fit(&self, bed: &Raster, [column, row]: [usize; 2]) -> Fit {
+        if bed.at(column, row).is_nan() {
+            return Fit::default();
+        }
+        let whole = |k: usize, count: usize| k >= self.m && k + self.m < count;
+        let regular =
+            (whole(column, bed.columns) && whole(row, bed.rows)).then(|| self.full(bed, column, row));
+        match regular {
+            Some(fit) if fit.is_number() => fit,
+            _ => ragged(bed, column, row, self.m),
+        }
+    }
+
+    /// The fit of a whole window, not a number where it holds nodata.
+    fn full(&self, bed: &Raster, column: usize, row: usize) -> Fit {
         let m = self.m as isize;
         let at = |u: isize, v: isize| {
             bed.values[row.wrapping_add_signed(v) * bed.columns + column.wrapping_add_signed(u)]
         };
-        let across = |u: isize| columns[column.wrapping_add_signed(u)];
+        let across = |u: isize| (1..=m).fold(at(u, 0), |sum, v| sum + (at(u, v) + at(u, -v)));
         let along = |v: isize| (1..=m).fold(at(0, v), |sum, u| sum + (at(u, v) + at(-u, v)));
         let (mut x, mut y) = (0.0, 0.0);
         let (mut xx, mut yy) = (self.squares[0] * across(0), self.squares[0] * along(0));

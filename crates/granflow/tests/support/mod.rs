@@ -87,24 +87,25 @@ pub struct Surface<const D: usize> {
     pub bent: [[f64; D]; D],
 }
 
-/// The grounds of a grid over `bed`, which answers `None` outside the data.
+/// The ground of a bed at one point.
+pub fn ground<const D: usize>(Surface { z, slope, bent }: Surface<D>) -> Terrain<D, f64> {
+    let cos = 1.0 / (1.0 + slope.iter().map(|s| s * s).sum::<f64>()).sqrt();
+    Terrain { level: z, slope, cos, curvature: bent.map(|row| row.map(|b| cos * b)), gravity: GRAVITY }
+}
+
+/// The grounds of a grid over `bed`, which answers `None` outside the data, rounded as a grid keeps them.
 pub fn terrain<const D: usize>(
     grid: &Grid<D>,
     bed: impl Fn([f64; D]) -> Option<Surface<D>>,
 ) -> Vec<Terrain<D, f64>> {
-    let at = |centre: [f64; D]| match bed(centre) {
-        None => Terrain::nothing(GRAVITY),
-        Some(Surface { z, slope, bent }) => {
-            let cos = 1.0 / (1.0 + slope.iter().map(|s| s * s).sum::<f64>()).sqrt();
-            Terrain {
-                level: z,
-                slope,
-                cos,
-                curvature: bent.map(|row| row.map(|b| cos * b)),
-                gravity: GRAVITY,
-            }
-        }
+    let single = |value: f64| f64::from(value as f32);
+    let kept = |ground: Terrain<D, f64>| Terrain {
+        slope: ground.slope.map(single),
+        cos: single(ground.cos),
+        curvature: ground.curvature.map(|row| row.map(single)),
+        ..ground
     };
+    let at = |centre| bed(centre).map_or(Terrain::nothing(GRAVITY), |surface| kept(ground(surface)));
     (0..grid.count()).map(|number| at(grid.centre(grid.index(number)))).collect()
 }
 
@@ -115,7 +116,7 @@ pub fn run<const D: usize, B: Bed<D, f64>>(
     step: StepSize,
     grid: Grid<D>,
     grounds: &[B],
-    start: impl Fn([f64; D], &B) -> Flow<D, f64>,
+    start: impl Fn([f64; D], &B) -> Flow<D, f64> + Sync,
 ) -> Run<D, B> {
     let number = |index: [usize; D]| index[0] + if D > 1 { index[D - 1] * grid.cells[0] } else { 0 };
     Simulation::new(
@@ -135,7 +136,7 @@ pub fn on_plane<const D: usize>(
     step: StepSize,
     grid: Grid<D>,
     ground: Chute<D, f64>,
-    start: impl Fn([f64; D]) -> Flow<D, f64>,
+    start: impl Fn([f64; D]) -> Flow<D, f64> + Sync,
 ) -> Run<D, Chute<D, f64>> {
     run(order, friction, step, grid, &vec![ground; grid.count()], |x, _| start(x))
 }

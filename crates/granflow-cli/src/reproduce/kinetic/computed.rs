@@ -2,6 +2,7 @@
 
 use granflow::case::Case;
 use granflow::hadeler_kuttler::scheme::HadelerKuttler;
+use granflow::results::Plane;
 use granflow::savage_hutter::Flow;
 use granflow::savage_hutter::exact::Riemann;
 use granflow::savage_hutter::ground::Bed;
@@ -208,7 +209,7 @@ impl Visit for Collect {
         unreachable!("the examples are flows down chutes")
     }
 
-    fn visit<const D: usize, S>(self, mut simulation: Simulation<D, S>) -> Computed
+    fn visit<const D: usize, S>(self, _plane: Plane, mut simulation: Simulation<D, S>) -> Computed
     where
         S: Scheme<D, f64, State = Flow<D, f64>>,
         S::Ground: Bed<D, f64>,
