@@ -98,6 +98,9 @@ pub struct Simulation<const D: usize, S: Scheme<D, f64>> {
     leaks: Vec<Leak>,
     instructions: Instructions,
     tallies: Vec<Tally>,
+    /// Sums over the cells of each tile, per cell measure, and which of them are out of date.
+    sums: Vec<Totals>,
+    unsummed: Vec<bool>,
     /// Their largest rates and speeds, by rows of tiles.
     levels: Vec<Level>,
     /// The largest rate of all.
@@ -174,6 +177,8 @@ impl<const D: usize, S: Scheme<D, f64>> Simulation<D, S> {
             spacing: Spacing::new(grid.size),
             next: now.clone(),
             tallies: vec![Tally::NONE; tiles.len()],
+            sums: vec![Totals::default(); tiles.len()],
+            unsummed: vec![true; tiles.len()],
             levels: vec![Level::default(); tiles.len() / across],
             rate: 0.0,
             leaky: Vec::new(),
@@ -289,6 +294,7 @@ impl<const D: usize, S: Scheme<D, f64>> Simulation<D, S> {
         boundary::fill(&mut self.grounds, grid, layout, |axis, g| scheme.mirror_ground(axis, &g));
         self.look_at_grounds();
         self.wake_all();
+        self.unsummed.fill(true);
     }
 
     fn place_in(layout: &Layout, index: [usize; D]) -> usize {
@@ -419,9 +425,12 @@ impl<const D: usize, S: Scheme<D, f64>> Simulation<D, S> {
     pub fn speed(&self) -> f64 {
         self.levels.iter().fold(0.0, |most, level| level.speed.max(most))
     }
-    /// Sums over all cells, compensated and in fixed order; every cell is looked at.
+    /// Sums over all cells, compensated and in fixed order; cells that changed since [`Simulation::sum_up`] are looked at.
     pub fn totals(&self) -> Totals {
-        let parts: Vec<Totals> = self.tiles.par_iter().map(|tile| self.totals_of(tile)).collect();
+        let sum = |(number, sums): (usize, &Totals)| {
+            if self.unsummed[number] { self.totals_of(&self.tiles[number]) } else { *sums }
+        };
+        let parts: Vec<Totals> = self.sums.par_iter().enumerate().map(sum).collect();
         let (mut volume, mut film) = (Sum::default(), Sum::default());
         let mut totals = Totals { speed: self.speed(), ..Totals::default() };
         for part in parts {
@@ -436,30 +445,46 @@ impl<const D: usize, S: Scheme<D, f64>> Simulation<D, S> {
         Totals { volume: volume.value() * measure, film: film.value() * measure, ..totals }
     }
 
+    /// Take the sums over the cells that have changed, so that [`Simulation::totals`] need not.
+    pub fn take_sums(&mut self) {
+        let mut sums = std::mem::take(&mut self.sums);
+        sums.par_iter_mut().zip(&self.tiles).zip(&self.unsummed).for_each(|((sums, tile), &unsummed)| {
+            if unsummed {
+                *sums = self.totals_of(tile);
+            }
+        });
+        self.sums = sums;
+        self.unsummed.fill(false);
+    }
+
     /// Sums over a tile, per cell measure.
     fn totals_of(&self, tile: &Tile) -> Totals {
         let mut totals = Totals::default();
-        for cell in self.cells_of(tile) {
-            let watch = self.scheme.watch(&cell);
+        self.visit(tile, |cell| {
+            let watch = self.scheme.watch(cell);
             totals.volume += watch.volume;
             totals.film += watch.volume * watch.film;
             totals.energy += watch.energy;
             totals.wet += usize::from(watch.volume > 0.0);
             totals.moving += usize::from(watch.square > 0.0);
-        }
+        });
         totals
     }
 
-    /// The cells of a tile that lie inside the data.
-    fn cells_of(&self, tile: &Tile) -> impl Iterator<Item = Cell<S::State, S::Ground>> {
+    /// See the cells of a tile that lie inside the data.
+    fn visit(&self, tile: &Tile, mut see: impl FnMut(&Cell<S::State, S::Ground>)) {
         let Tile { columns, rows, .. } = *tile;
-        let places = (rows[0]..rows[1]).flat_map(move |j| {
+        let width = columns[1] - columns[0];
+        for j in rows[0]..rows[1] {
             let start = self.layout.place(columns[0] as isize, j as isize);
-            start..start + columns[1] - columns[0]
-        });
-        places
-            .map(|place| Cell { state: self.now.get(place), ground: self.grounds.get(place) })
-            .filter(|cell: &Cell<S::State, S::Ground>| !self.scheme.outside(&cell.ground))
+            let (states, grounds) = (self.now.row(start, width), self.grounds.row(start, width));
+            for i in 0..width {
+                let cell = Cell { state: states.get(i), ground: grounds.get(i) };
+                if !self.scheme.outside(&cell.ground) {
+                    see(&cell);
+                }
+            }
+        }
     }
 
     /// Keep summary maps from now on, beginning with the state as it stands.
@@ -483,15 +508,16 @@ impl<const D: usize, S: Scheme<D, f64>> Simulation<D, S> {
             // Nothing is known of the change before the next step.
             let mut tally = Tally { change: [f64::INFINITY; MOST_PARTS], ..Tally::NONE };
             let mut square = 0.0;
-            for cell in self.cells_of(tile) {
-                let rate = self.scheme.rate(&cell, &self.spacing);
+            self.visit(tile, |cell| {
+                let rate = self.scheme.rate(cell, &self.spacing);
                 tally.rate = if tally.rate < rate { rate } else { tally.rate };
-                square = self.scheme.watch(&cell).square.max(square);
-            }
+                square = self.scheme.watch(cell).square.max(square);
+            });
             tally.speed = square.sqrt();
             tally
         };
         self.tallies = self.tiles.par_iter().map(survey).collect();
+        self.unsummed.fill(true);
         self.levels.fill(Level { stale: true, ..Level::default() });
         self.find_rate();
     }
@@ -583,6 +609,7 @@ impl<const D: usize, S: Scheme<D, f64>> Simulation<D, S> {
             let tally = &self.tallies[number as usize];
             finite &= tally.finite;
             self.levels[number as usize / self.across].stale = true;
+            self.unsummed[number as usize] = true;
             if !tally.quiet {
                 self.restless.push(number);
             }

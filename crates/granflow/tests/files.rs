@@ -4,24 +4,42 @@ use granflow::case::Case;
 use granflow::output::summary::StopReason;
 use granflow::raster::Raster;
 use granflow::results::{FilesError, Finished, Story};
-use granflow::run::{Options, run};
+use granflow::run::{Options, RunError, Status, run};
 use std::fmt::Write as _;
 use std::fs;
 use std::path::{Path, PathBuf};
-use std::sync::atomic::AtomicBool;
+use std::sync::atomic::{AtomicBool, Ordering};
 
-fn computed(case: &str, folder: &Path) -> Finished {
+fn case(text: &str, folder: &Path) -> Case {
     let file = folder.join("case.toml");
-    fs::write(&file, case).unwrap();
+    fs::write(&file, text).unwrap();
     let case = Case::load(&file).unwrap();
     case.check().unwrap();
-    let options =
-        Options { directory: folder.join("out"), threads: 2, resume: false, command: "test".to_owned() };
-    run(&case, &options, &AtomicBool::new(false), &mut |_| ()).unwrap()
+    case
 }
 
-/// A slope of 35 deg that ends on a plain, with a corner of nodata, and a heap upon it.
-fn avalanche(folder: &Path) -> Finished {
+/// Compute until `stop` says so.
+fn begin(
+    case: &Case,
+    out: &Path,
+    resume: bool,
+    stop: &mut (dyn FnMut(&Status) -> bool + Send),
+) -> Result<Finished, RunError> {
+    let options = Options { directory: out.to_owned(), threads: 2, resume, command: "test".to_owned() };
+    let stopped = AtomicBool::new(false);
+    run(case, &options, &stopped, &mut |status| {
+        if stop(status) {
+            stopped.store(true, Ordering::Relaxed);
+        }
+    })
+}
+
+fn computed(text: &str, folder: &Path) -> Finished {
+    begin(&case(text, folder), &folder.join("out"), false, &mut |_| false).unwrap()
+}
+
+/// The case of a slope of 35 deg that ends on a plain, with a corner of nodata, and a heap upon it.
+fn slope(folder: &Path, files: &str) -> Case {
     let mut text =
         "ncols 30\nnrows 60\nxllcorner 1000\nyllcorner 2000\ncellsize 5\nNODATA_value -9999\n".to_owned();
     for row in 0..60 {
@@ -33,7 +51,7 @@ fn avalanche(folder: &Path) -> Finished {
         text.push('\n');
     }
     fs::write(folder.join("slope.asc"), text).unwrap();
-    let case = r#"
+    let text = r#"
 title = "A small slide"
 [terrain]
 dem = "slope.asc"
@@ -50,9 +68,13 @@ end = 200.0
 [output]
 every = 4.0
 precision = "f64"
-files = ["netcdf", "csv", "vtk", "geotiff", "vector", "figures", "animation", "report"]
 "#;
-    computed(case, folder)
+    case(&format!("{text}files = {files}\n"), folder)
+}
+
+fn avalanche(folder: &Path) -> Finished {
+    let all = r#"["netcdf", "csv", "vtk", "geotiff", "vector", "figures", "animation", "report"]"#;
+    begin(&slope(folder, all), &folder.join("out"), false, &mut |_| false).unwrap()
 }
 
 /// Width, height and number of pictures of a PNG whose pixels are not all alike.
@@ -123,7 +145,6 @@ fn every_file_of_a_mountain_opens_and_holds_the_run() {
 fn a_result_is_drawn_again_as_it_was() {
     let folder = tempfile::tempdir().unwrap();
     let run = avalanche(folder.path());
-    run.write_files().unwrap();
     let again = folder.path().join("again");
     let figures = Story::read(&run.result()).unwrap().draw(&again).unwrap();
     assert_eq!(figures.len(), 7);
@@ -131,6 +152,43 @@ fn a_result_is_drawn_again_as_it_was() {
         let name = figure.path.file_name().unwrap();
         let first = fs::read(run.figures().join(name)).unwrap();
         assert!(fs::read(&figure.path).unwrap() == first, "{name:?}");
+    }
+}
+
+/// The disk fills up while the run goes on, written to by another thread: it ends soon, says which file and what helps, and
+/// goes on from its checkpoint to the bits of the unbroken run.
+#[test]
+#[cfg(target_os = "linux")]
+fn a_full_disk_ends_the_run_and_nothing_complete_is_lost() {
+    let folder = tempfile::tempdir().unwrap();
+    let case = slope(folder.path(), r#"["netcdf"]"#);
+    let [whole, parts] = ["whole", "parts"].map(|name| folder.path().join(name));
+    let unbroken = begin(&case, &whole, false, &mut |_| false).unwrap().summary;
+    let half = unbroken.steps / 2;
+    let interrupted = begin(&case, &parts, false, &mut |status| status.step == half / 2).unwrap();
+    assert_eq!(interrupted.summary.stop_reason, StopReason::Interrupted);
+
+    let (ledger, aside) = (parts.join("mass.csv"), parts.join("aside.csv"));
+    let mut last = 0;
+    let failed = begin(&case, &parts, true, &mut |status| {
+        if status.step == half {
+            fs::rename(&ledger, &aside).unwrap();
+            std::os::unix::fs::symlink("/dev/full", &ledger).unwrap();
+        }
+        last = status.step;
+        false
+    });
+    let message = failed.unwrap_err().to_string();
+    for part in ["mass.csv", "cannot write", "--resume"] {
+        assert!(message.contains(part), "{message}");
+    }
+    assert!(last < unbroken.steps, "the run went on to its end, step {last}");
+
+    fs::rename(&aside, &ledger).unwrap();
+    let resumed = begin(&case, &parts, true, &mut |_| false).unwrap().summary;
+    assert_eq!((resumed.stop_reason, resumed.steps), (StopReason::AtRest, unbroken.steps));
+    for file in ["mass.csv", "checkpoint/frames.bin"] {
+        assert!(fs::read(whole.join(file)).unwrap() == fs::read(parts.join(file)).unwrap(), "{file} differs");
     }
 }
 

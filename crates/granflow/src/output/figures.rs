@@ -50,6 +50,7 @@ pub use curves::{Curve, Fill, Profiles, Style};
 pub use heat::{Frame, HeatMap, Levels, Outline};
 pub use history::{History, HistoryPanel};
 pub use map::{Extent, Map, Overlay};
+pub use relief::Relief;
 pub use section::Section;
 pub use surface::{Paint, Surface};
 pub use ticks::{round_length, short};

@@ -98,23 +98,51 @@ pub(super) fn top(values: impl Iterator<Item = f64>) -> f64 {
     if most > 1.25 * nearly { nearly } else { most }
 }
 
+/// What one map shows over the mountain.
+struct Layer {
+    name: &'static str,
+    label: &'static str,
+    unit: &'static str,
+    colours: Colours,
+    threshold: f64,
+    shown: Vec<f64>,
+    /// Where its colours end.
+    limit: f64,
+}
+
+impl Layer {
+    fn outlines<'a>(&self, ground: &'a Ground) -> Vec<Outline<'a>> {
+        ground.outlines(self.name == "deposit", self.name == "deposit")
+    }
+
+    /// Its map, without words and relief.
+    fn map<'a>(&'a self, ground: &'a Ground, outlines: &'a [Outline]) -> Map<'a> {
+        let most = if self.limit > 0.0 { self.limit } else { 1.0 };
+        let overlay = Overlay {
+            values: &self.shown,
+            quantity: Axis::new(self.label, self.unit).over(0.0, most),
+            threshold: self.threshold,
+            colours: self.colours,
+        };
+        Map { extent: ground.extent, bed: ground.bed, overlay: Some(overlay), outlines, ..Default::default() }
+    }
+}
+
 /// All figures of a run on a mountain.
 pub(super) fn mountain<'a>(story: &'a Story<'a>) -> Vec<Drawing<'a>> {
     let (Some(ground), Some(peak)) = (Ground::of(story), story.map("peak_thickness")) else {
         return Vec::new();
     };
     let ground = Arc::new(ground);
-    let mut drawings = Vec::new();
-    let plan: [(&'static str, &str, &str, Colours); 5] = [
+    let plan: [(&'static str, &'static str, &'static str, Colours); 5] = [
         ("peak_thickness", "greatest thickness", "m", Colours::Thickness),
         ("deposit", "deposit", "m", Colours::Thickness),
         ("peak_speed", "greatest speed", "m/s", Colours::Speed),
         ("peak_pressure", "greatest pressure", "kPa", Colours::Speed),
         ("arrival_time", "arrival time", "s", Colours::Viridis),
     ];
-    for (name, label, unit, colours) in plan {
-        let Some(map) = story.map(name) else { continue };
-        let ground = ground.clone();
+    let layers = plan.into_iter().filter_map(|(name, label, unit, colours)| {
+        let map = story.map(name)?;
         // Films are fast and thin: a figure shows what a person would see.
         let thick = if name == "deposit" { map } else { peak };
         let layer = matches!(name, "peak_thickness" | "deposit");
@@ -124,9 +152,28 @@ pub(super) fn mountain<'a>(story: &'a Story<'a>) -> Vec<Drawing<'a>> {
             _ => NOWHERE,
         };
         let shown: Vec<f64> = map.iter().zip(thick).map(value).collect();
-        let most = shown.iter().fold(0.0_f64, |most, v| most.max(*v));
         let least = if layer { REACHED } else { 0.0 };
         let limit = top(shown.iter().copied().filter(|&v| v > least));
+        Some(Layer {
+            name,
+            label,
+            unit,
+            colours,
+            threshold: if layer { REACHED } else { -0.5 },
+            shown,
+            limit,
+        })
+    });
+    let layers: Vec<Layer> = layers.collect();
+    // Before the maps are drawn side by side: most of them show the same box of the mountain.
+    let relief =
+        layers.first().and_then(|layer| layer.map(&ground, &layer.outlines(&ground)).mountain().ok());
+    let relief = Arc::new(relief);
+    let mut drawings = Vec::new();
+    for layer in layers {
+        let Layer { name, label, unit, limit, .. } = layer;
+        let (ground, relief) = (ground.clone(), relief.clone());
+        let most = layer.shown.iter().fold(0.0_f64, |most, v| most.max(*v));
         let clipped =
             if limit < most { ", colours end at the value that 0.2 % of the cells exceed" } else { "" };
         let of = if name == "deposit" { "where it is" } else { "where the flow was" };
@@ -137,19 +184,9 @@ pub(super) fn mountain<'a>(story: &'a Story<'a>) -> Vec<Drawing<'a>> {
         let mut caption = format!("{what}; shown {of} thicker than {REACHED} m{lines}.");
         caption[..1].make_ascii_uppercase();
         drawings.push(Drawing::new(name, caption, move || {
-            let quantity = Axis::new(label, unit).over(0.0, if limit > 0.0 { limit } else { 1.0 });
-            let threshold = if layer { REACHED } else { -0.5 };
-            let overlay = Overlay { values: &shown, quantity, threshold, colours };
-            Map {
-                title: &story.title,
-                subtitle: &subtitle,
-                extent: ground.extent,
-                bed: ground.bed,
-                overlay: Some(overlay),
-                outlines: &ground.outlines(name == "deposit", name == "deposit"),
-                ..Default::default()
-            }
-            .draw()
+            let outlines = layer.outlines(&ground);
+            let map = layer.map(&ground, &outlines);
+            Map { title: &story.title, subtitle: &subtitle, relief: relief.as_ref().as_ref(), ..map }.draw()
         }));
     }
     if let (true, Some(deposit), Some(speed)) =

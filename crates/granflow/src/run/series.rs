@@ -36,10 +36,11 @@ impl<const D: usize, S: Model<D>> Run<'_, '_, D, S> {
 
     /// A line of the ledger.
     pub(super) fn line(&mut self) -> Result<(), RunError> {
-        let simulation = &self.simulation;
-        if self.written[1] == simulation.time() {
+        if self.written[1] == self.simulation.time() {
             return Ok(());
         }
+        self.simulation.take_sums();
+        let simulation = &self.simulation;
         let totals = simulation.totals();
         let out = simulation.out();
         let (gone, mass_in) = (sum(out), simulation.poured());

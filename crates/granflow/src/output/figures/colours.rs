@@ -76,19 +76,22 @@ impl Colours {
 pub(super) fn pick(table: &[Rgb], value: f64, [low, high]: [f64; 2]) -> Rgb {
     let last = table.len() - 1;
     let t = (value - low) / (high - low);
-    table[if t > 0.0 { ((t * last as f64).round() as usize).min(last) } else { 0 }]
+    table[if t > 0.0 { ((t * last as f64 + 0.5) as usize).min(last) } else { 0 }]
+}
+
+/// The nearest of 0..255, without the call that `round` is: millions of pixels are rounded three times or more.
+pub(super) fn whole(shade: f64) -> u8 {
+    (shade + 0.5) as u8
 }
 
 /// `a` at 0, `b` at 1.
 pub(super) fn mix(a: Rgb, b: Rgb, t: f64) -> Rgb {
-    std::array::from_fn(|k| {
-        (f64::from(a[k]) * (1.0 - t) + f64::from(b[k]) * t).round().clamp(0.0, 255.0) as u8
-    })
+    std::array::from_fn(|k| whole(f64::from(a[k]) * (1.0 - t) + f64::from(b[k]) * t))
 }
 
 /// The colour in more or less light.
 pub(super) fn shade(colour: Rgb, light: f64) -> Rgb {
-    std::array::from_fn(|k| (f64::from(colour[k]) * light).round().clamp(0.0, 255.0) as u8)
+    std::array::from_fn(|k| whole(f64::from(colour[k]) * light))
 }
 
 #[cfg(test)]

@@ -6,7 +6,7 @@ use super::colours::{INK, Rgb, WHITE, mix};
 use super::ticks::{number, round_length};
 
 /// Contour lines every `interval`, each fifth one stronger.
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Contours {
     pub interval: f64,
 }
@@ -20,10 +20,9 @@ impl Contours {
         (relief > 0.0 && relief.is_finite()).then(|| Self { interval: round_length(relief / 18.0) })
     }
 
-    /// `colour` with the contour line that passes here drawn over it: the distance to the line is |z - level| over the
-    /// slope per pixel, so that lines are equally wide wherever they run.
-    pub fn over_colour(&self, colour: Rgb, z: f64, slope: f64) -> Rgb {
-        mix(colour, Self::COLOUR, self.ink(z, slope))
+    /// `colour` with so much of a line drawn over it.
+    pub fn over_colour(colour: Rgb, ink: f64) -> Rgb {
+        mix(colour, Self::COLOUR, ink)
     }
 
     /// As [`Contours::over_colour`], dark over pale colours and white over dark ones.
@@ -33,8 +32,9 @@ impl Contours {
         mix(colour, if pale { INK } else { WHITE }, self.ink(z, slope))
     }
 
-    /// How much of a line passes here.
-    fn ink(&self, z: f64, slope: f64) -> f64 {
+    /// How much of a line passes here: the distance to it is |z - level| over the slope per pixel, so that lines are equally
+    /// wide wherever they run.
+    pub fn ink(&self, z: f64, slope: f64) -> f64 {
         if slope.is_nan() || slope <= 1e-12 * self.interval {
             return 0.0;
         }
@@ -127,17 +127,16 @@ mod tests {
         let contours = Contours::over(900.0).unwrap();
         assert_eq!(contours.interval, 50.0);
         let white = [255; 3];
+        let over = |z: f64, slope: f64| Contours::over_colour(white, contours.ink(z, slope));
         for slope in [0.5, 2.0, 5.0] {
-            let inked = (0..1000)
-                .map(|k| slope * f64::from(k))
-                .filter(|&z| contours.over_colour(white, z, slope) != white);
+            let inked = (0..1000).map(|k| slope * f64::from(k)).filter(|&z| over(z, slope) != white);
             let share = inked.count() as f64 / 1000.0;
             // Four fine lines of at most 1.7 pixels and a strong one of 2.8 on every 250 / slope pixels.
             assert!(share > 0.0 && share < (4.0 * 2.0 + 3.0) * slope / 250.0 + 0.01, "{slope}: {share}");
         }
-        assert_eq!(contours.over_colour(white, 1025.0, 1.0), white);
-        assert!(contours.over_colour(white, 1000.0, 1.0)[0] < contours.over_colour(white, 1050.0, 1.0)[0]);
-        assert_eq!(contours.over_colour(white, 1000.0, 0.0), white, "flat ground has no lines");
+        assert_eq!(over(1025.0, 1.0), white);
+        assert!(over(1000.0, 1.0)[0] < over(1050.0, 1.0)[0]);
+        assert_eq!(over(1000.0, 0.0), white, "flat ground has no lines");
         assert!(Contours::over(0.0).is_none());
     }
 }

@@ -13,7 +13,7 @@ pub(super) struct Lattice<'a> {
 }
 
 /// A place between lattice points: the point before, the share of the next one.
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Between {
     index: usize,
     next: usize,

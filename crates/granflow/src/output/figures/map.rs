@@ -1,7 +1,5 @@
 //! The map: shaded mountain, contour lines, a field laid over it, outlines, scale bar.
 
-use rayon::prelude::*;
-
 use super::axes::{
     Axis, Caption, Panel, RIM, Scale, bottom_room, extent, heading, heading_height, left_room,
 };
@@ -10,9 +8,9 @@ use super::colour_bar::ColourBar;
 use super::colours::{Colours, mix, pick, shade};
 use super::contours::{Contours, Elevations};
 use super::heat::Outline;
-use super::lattice::{Between, Lattice, paint};
+use super::lattice::{Lattice, paint};
 use super::legend::{Key, Legend, along};
-use super::relief::{ground, hillshade};
+use super::relief::{Relief, ground};
 use super::scale_bar::ScaleBar;
 use super::{Figure, FigureError, Picture};
 
@@ -72,6 +70,8 @@ pub struct Map<'a> {
     pub contours: bool,
     /// Shows only the box around field and outlines, widened on each side by this share of its greater side.
     pub crop: Option<f64>,
+    /// [`Map::mountain`] of this map, or of another of the same raster; worked out anew where that shows another box.
+    pub relief: Option<&'a Relief>,
 }
 
 impl Default for Map<'_> {
@@ -86,18 +86,36 @@ impl Default for Map<'_> {
             outlines,
             contours: true,
             crop: Some(0.12),
+            relief: None,
         }
     }
 }
 
 /// The part of the world that a map shows.
 #[derive(Debug, Clone, Copy, PartialEq)]
-struct View {
-    x: [f64; 2],
-    y: [f64; 2],
+pub(super) struct View {
+    pub x: [f64; 2],
+    pub y: [f64; 2],
+}
+
+/// Width and height of what shows this box, in points.
+fn paper(view: View) -> (f64, f64) {
+    let ratio = (view.y[1] - view.y[0]) / (view.x[1] - view.x[0]);
+    if ratio < 0.95 { (640.0, 640.0 * ratio) } else { (610.0 / ratio, 610.0) }
 }
 
 impl Map<'_> {
+    /// The mountain as this map shows it, for [`Map::relief`] of maps that show the same box.
+    ///
+    /// # Errors
+    /// As [`Figure::draw`].
+    pub fn mountain(&self) -> Result<Relief, FigureError> {
+        self.check()?;
+        let view = self.view();
+        let (width, height) = paper(view);
+        Ok(Relief::of(self, view, Area { left: 0.0, top: 0.0, width, height }.pixels()))
+    }
+
     /// The whole raster, or the box around what is of interest, not narrower than 1 to 2.2.
     fn view(&self) -> View {
         let e = self.extent;
@@ -159,8 +177,7 @@ impl Figure for Map<'_> {
         let view = self.view();
         let scale = |range| Scale { coordinates: true, ..Scale::new(range) };
         let (x, y) = (scale(view.x), scale(view.y));
-        let ratio = (view.y[1] - view.y[0]) / (view.x[1] - view.x[0]);
-        let (wide, high) = if ratio < 0.95 { (640.0, 640.0 * ratio) } else { (610.0 / ratio, 610.0) };
+        let (wide, high) = paper(view);
         let overlay = self.overlay.map(|overlay| (overlay, colour_range(&overlay)));
         let bar =
             overlay.map(|(o, range)| ColourBar { colours: o.colours, range, caption: o.quantity.caption() });
@@ -176,36 +193,28 @@ impl Figure for Map<'_> {
         let panel = Panel::within(area, x, y, easting, northing);
 
         let (columns, rows) = panel.area.pixels();
-        let at = |k: usize, n: usize, [low, high]: [f64; 2]| low + (high - low) * (k as f64 + 0.5) / n as f64;
-        let across: Vec<_> = (0..columns)
-            .map(|k| Between::new((at(k, columns, view.x) - e.west) / e.cell - 0.5, e.nx))
-            .collect();
-        let up: Vec<_> = (0..rows)
-            .map(|k| Between::new((at(rows - 1 - k, rows, view.y) - e.south) / e.cell - 0.5, e.ny))
-            .collect();
-        let lattice = |values| Lattice { values, nx: e.nx };
-        let light = hillshade(self.bed, e.nx, e.ny, e.cell);
-        let light = lattice(&light);
-        let mut elevation = vec![f64::NAN; columns * rows];
-        elevation.par_chunks_mut(columns).zip(&up).for_each(|(line, &up)| {
-            line.iter_mut().zip(&across).for_each(|(z, &across)| *z = lattice(self.bed).at(across, up));
-        });
-        let relief = Elevations { elevation: &elevation, columns, rows };
-        let shown = extent(elevation.iter().copied());
-        let contours = shown.filter(|_| self.contours).and_then(|[low, high]| Contours::over(high - low));
+        let own;
+        let relief = match self.relief {
+            Some(relief) if relief.shows(view, (columns, rows)) => relief,
+            _ => {
+                own = Relief::of(self, view, (columns, rows));
+                &own
+            }
+        };
+        let Relief { across, up, elevation, light, contours, ink, .. } = relief;
         let table = overlay.map(|(o, _)| o.colours.table());
         let zeroed: Vec<f64> = overlay.map_or(Vec::new(), |(o, _)| {
             o.values.iter().map(|&v| if v.is_finite() { v } else { 0.0 }).collect()
         });
-        let field = |column: usize, row: usize| lattice(&zeroed).at(across[column], up[row]);
+        let field =
+            |column: usize, row: usize| Lattice { values: &zeroed, nx: e.nx }.at(across[column], up[row]);
 
         let image = paint((columns, rows), |column, row| {
-            let z = elevation[row * columns + column];
-            if !z.is_finite() {
+            let pixel = row * columns + column;
+            if !elevation[pixel].is_finite() {
                 return None;
             }
-            let light = light.at(across[column], up[row]);
-            let light = if light.is_finite() { light } else { 0.7 };
+            let light = if light[pixel].is_finite() { light[pixel] } else { 0.7 };
             let mut colour = ground(light);
             if let (Some((o, range)), Some(table)) = (overlay, &table) {
                 let value = field(column, row);
@@ -214,10 +223,7 @@ impl Figure for Map<'_> {
                         mix(colour, shade(pick(table, value, range), (0.80 + 0.34 * light).min(1.06)), 0.88);
                 }
             }
-            Some(match contours {
-                Some(contours) => contours.over_colour(colour, z, relief.slope(column, row)),
-                None => colour,
-            })
+            Some(ink.get(pixel).map_or(colour, |&ink| Contours::over_colour(colour, ink)))
         });
         if let Some(image) = image {
             canvas.image(&image, [panel.area.left, panel.area.top]);
@@ -248,7 +254,8 @@ impl Figure for Map<'_> {
                 let beside = |q: &[f64; 2]| (p[0] - q[0]).hypot(p[1] - q[1]) < 12.0;
                 !covered(column, row) && !boxes.iter().any(|b| b.contains(p)) && !lines.iter().any(beside)
             };
-            relief.label(&mut canvas, &panel, contours, free);
+            let elevations = Elevations { elevation, columns, rows };
+            elevations.label(&mut canvas, &panel, *contours, free);
         }
         self.outlines.iter().for_each(|outline| outline.draw(&mut canvas, &panel));
         ruler.draw(&mut canvas);

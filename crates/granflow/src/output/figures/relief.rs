@@ -1,8 +1,70 @@
-//! The mountain under a map: light and shadow.
+//! The mountain under a map: light and shadow, and contour lines.
 
 use rayon::prelude::*;
 
-use super::colours::Rgb;
+use super::axes::extent;
+use super::colours::{Rgb, whole};
+use super::contours::{Contours, Elevations};
+use super::lattice::{Between, Lattice};
+use super::map::{Map, View};
+
+/// The mountain at every pixel of a map, without what happened on it: maps that show the same box have it in common.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Relief {
+    view: View,
+    columns: usize,
+    rows: usize,
+    /// Where the pixels of a row, and of a column, lie among the cells.
+    pub(super) across: Vec<Between>,
+    pub(super) up: Vec<Between>,
+    pub(super) elevation: Vec<f64>,
+    pub(super) light: Vec<f64>,
+    pub(super) contours: Option<Contours>,
+    /// How much of a contour line passes.
+    pub(super) ink: Vec<f64>,
+}
+
+impl Relief {
+    /// The relief of `map` in the box `view` on so many pixels.
+    pub(super) fn of(map: &Map, view: View, (columns, rows): (usize, usize)) -> Relief {
+        let e = map.extent;
+        let at = |k: usize, n: usize, [low, high]: [f64; 2]| low + (high - low) * (k as f64 + 0.5) / n as f64;
+        let across: Vec<_> = (0..columns)
+            .map(|k| Between::new((at(k, columns, view.x) - e.west) / e.cell - 0.5, e.nx))
+            .collect();
+        let up: Vec<_> = (0..rows)
+            .map(|k| Between::new((at(rows - 1 - k, rows, view.y) - e.south) / e.cell - 0.5, e.ny))
+            .collect();
+        let at_pixels = |values: &[f64]| {
+            let lattice = Lattice { values, nx: e.nx };
+            let mut pixels = vec![f64::NAN; columns * rows];
+            pixels.par_chunks_mut(columns).zip(&up).for_each(|(line, &up)| {
+                line.iter_mut().zip(&across).for_each(|(pixel, &across)| *pixel = lattice.at(across, up));
+            });
+            pixels
+        };
+        let elevation = at_pixels(map.bed);
+        let light = at_pixels(&hillshade(map.bed, e.nx, e.ny, e.cell));
+        let shown = extent(elevation.iter().copied());
+        let contours = shown.filter(|_| map.contours).and_then(|[low, high]| Contours::over(high - low));
+        let mut ink = Vec::new();
+        if let Some(contours) = contours {
+            let elevations = Elevations { elevation: &elevation, columns, rows };
+            ink.resize(columns * rows, 0.0);
+            ink.par_chunks_mut(columns).enumerate().for_each(|(row, line)| {
+                for (column, ink) in line.iter_mut().enumerate() {
+                    *ink = contours.ink(elevation[row * columns + column], elevations.slope(column, row));
+                }
+            });
+        }
+        Relief { view, columns, rows, across, up, elevation, light, contours, ink }
+    }
+
+    /// Is it of this box and size?
+    pub(super) fn shows(&self, view: View, size: (usize, usize)) -> bool {
+        self.view == view && (self.columns, self.rows) == size
+    }
+}
 
 /// Height of the sun over the horizon: 35 degrees, low enough that steep slopes towards it are not all alike.
 const SUN: f64 = 35.0;
@@ -34,7 +96,7 @@ pub(super) fn hillshade(bed: &[f64], nx: usize, ny: usize, cell: f64) -> Vec<f64
 
 /// The grey of ground in this light, never as bright as the white of missing ground.
 pub(super) fn ground(light: f64) -> Rgb {
-    [(255.0 * (0.55 + 0.40 * light)).round() as u8; 3]
+    [whole(255.0 * (0.55 + 0.40 * light)); 3]
 }
 
 #[cfg(test)]
