@@ -8,7 +8,7 @@ mod scratch;
 mod strip;
 mod tally;
 
-use crate::field::{Field, View};
+use crate::field::Field;
 use crate::grid::Layout;
 use crate::lanes::{Inside, Instructions, Job, Wide};
 use crate::observe::Maps;
@@ -86,14 +86,14 @@ impl<'a, T> Sheet<'a, T> {
     ///
     /// # Safety
     /// Nobody else uses them during the life of the sheet.
-    unsafe fn slice(&self, places: Range<usize>) -> &'a mut [T] {
+    pub(crate) unsafe fn slice(&self, places: Range<usize>) -> &'a mut [T] {
         assert!(places.start <= places.end && places.end <= self.len);
         // SAFETY: in bounds, and nobody else uses these places.
         unsafe { std::slice::from_raw_parts_mut(self.start.add(places.start), places.len()) }
     }
 }
 
-impl Sheet<'_> {
+impl Sheet<'_, f32> {
     /// What stands from `place` on where `live` holds, `else` 0.
     ///
     /// # Safety
@@ -102,7 +102,7 @@ impl Sheet<'_> {
     pub(crate) unsafe fn get<L: Wide>(&self, place: usize, live: L::Mask) -> L {
         debug_assert!(place + L::WIDTH <= self.len);
         // SAFETY: in bounds, and nobody else writes here.
-        unsafe { L::load_where(live, self.start.add(place)) }
+        unsafe { L::load_single_where(live, self.start.add(place)) }
     }
     /// # Safety
     /// Only one thread may use the places of `live` during the life of the sheet.
@@ -110,7 +110,7 @@ impl Sheet<'_> {
     pub(crate) unsafe fn put<L: Wide>(&self, place: usize, live: L::Mask, value: L) {
         debug_assert!(place + L::WIDTH <= self.len);
         // SAFETY: in bounds, and nobody else uses these places.
-        unsafe { value.store_where(live, self.start.add(place)) }
+        unsafe { value.store_single_where(live, self.start.add(place)) }
     }
 }
 
@@ -124,9 +124,9 @@ pub struct Sweep<'a, const D: usize> {
     /// Cell sizes.
     pub size: [f64; D],
     /// Static data.
-    pub grounds: View<'a>,
+    pub grounds: &'a Field,
     /// The state that the forward-Euler map is applied to.
-    pub from: View<'a>,
+    pub from: &'a Field,
     /// The ways out.
     pub leaks: &'a [Leak],
     /// Step.
@@ -166,7 +166,7 @@ struct Tiles<'a, const D: usize, S> {
     awake: &'a [u32],
     runs: &'a [Run],
     to: [Option<Sheet<'a>>; MOST_PARTS],
-    maps: Option<[Sheet<'a>; 4]>,
+    maps: Option<[Sheet<'a, f32>; 4]>,
     tallies: Sheet<'a, Tally>,
 }
 
@@ -183,7 +183,7 @@ struct OnLanes<T, I> {
     inside: I,
 }
 
-impl<const D: usize, L: Wide, S: Sync, I: Inside> Work<D, L> for OnLanes<Tiles<'_, D, S>, I> {
+impl<const D: usize, L: Wide, S: Scheme<D, f64>, I: Inside> Work<D, L> for OnLanes<Tiles<'_, D, S>, I> {
     type Output = ();
     fn with<T: Scheme<D, L>>(self, scheme: &T) {
         let OnLanes { tiles: Tiles { sweep, tiles, awake, runs, to, maps, tallies, .. }, inside } = self;
@@ -198,7 +198,7 @@ impl<const D: usize, L: Wide, S: Sync, I: Inside> Work<D, L> for OnLanes<Tiles<'
                         // SAFETY: every tile belongs to one run.
                         let tallies = unsafe { tallies.slice(range.clone()) };
                         let to = (&to, maps.as_ref());
-                        Strip::<D, L, T>::run(sweep, scheme, tiles, *across, to, tallies, &mut desk);
+                        Strip::<D, L, T>::run::<S>(sweep, scheme, tiles, *across, to, tallies, &mut desk);
                     }
                 },
             );

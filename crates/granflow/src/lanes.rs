@@ -71,6 +71,63 @@ pub(crate) trait Wide: Real {
             }
         }
     }
+    /// Read numbers of single precision.
+    ///
+    /// # Safety
+    /// As [`Wide::load`].
+    #[inline(always)]
+    unsafe fn load_single(from: *const f32) -> Self {
+        let mut numbers = [0.0; MOST_LANES];
+        for k in 0..Self::WIDTH {
+            // SAFETY: as the caller promises.
+            numbers[k] = f64::from(unsafe { *from.add(k) });
+        }
+        // SAFETY: there are no more lanes.
+        unsafe { Self::load(numbers.as_ptr()) }
+    }
+    /// Read those of `mask`, 0 elsewhere.
+    ///
+    /// # Safety
+    /// As [`Wide::load_where`].
+    #[inline(always)]
+    unsafe fn load_single_where(mask: Self::Mask, from: *const f32) -> Self {
+        if Self::all(mask) {
+            // SAFETY: as the caller promises.
+            return unsafe { Self::load_single(from) };
+        }
+        let mut numbers = [0.0; MOST_LANES];
+        for k in 0..Self::WIDTH {
+            if Self::holds(mask, k) {
+                // SAFETY: as the caller promises.
+                numbers[k] = f64::from(unsafe { *from.add(k) });
+            }
+        }
+        // SAFETY: there are no more lanes.
+        unsafe { Self::load(numbers.as_ptr()) }
+    }
+    /// Write those of `mask`, rounded to single precision.
+    ///
+    /// # Safety
+    /// As [`Wide::store_where`].
+    #[inline(always)]
+    unsafe fn store_single_where(self, mask: Self::Mask, to: *mut f32) {
+        let mut numbers = [0.0; MOST_LANES];
+        // SAFETY: there are no more lanes.
+        unsafe { self.store(numbers.as_mut_ptr()) };
+        if Self::all(mask) {
+            for k in 0..Self::WIDTH {
+                // SAFETY: as the caller promises.
+                unsafe { *to.add(k) = numbers[k] as f32 };
+            }
+            return;
+        }
+        for k in 0..Self::WIDTH {
+            if Self::holds(mask, k) {
+                // SAFETY: as the caller promises.
+                unsafe { *to.add(k) = numbers[k] as f32 };
+            }
+        }
+    }
     /// The first of them.
     fn first(self) -> f64;
     /// Holds in place `k`?
@@ -119,7 +176,7 @@ impl Wide for f64 {
 
 /// Ask for a number that will be read or written soon.
 #[inline(always)]
-pub(crate) fn expect(place: *const f64) {
+pub(crate) fn expect(place: *const u8) {
     #[cfg(target_arch = "x86_64")]
     // SAFETY: a prefetch may be given any address.
     unsafe {

@@ -6,12 +6,17 @@ use crate::real::Real;
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Varies<const LIMITED: bool>;
 
+/// The smaller of two differences where both rise, and where both fall; 0 else. One of the two is 0.
+#[inline(always)]
+fn smaller<R: Real>(a: R, b: R) -> [R; 2] {
+    [a.min(b).positive(), a.max(b).min(R::zero())]
+}
+
 /// The smallest of two differences of one sign, else 0: minmod(a, b).
 #[inline(always)]
 pub fn minmod<R: Real>(a: R, b: R) -> R {
-    let size = a.abs().min(b.abs());
-    let same_sign = R::zero().lt(a * b);
-    R::select(same_sign, R::select(a.lt(R::zero()), -size, size), R::zero())
+    let [rise, fall] = smaller(a, b);
+    rise + fall
 }
 
 /// Central slope within 1.5 times each one-sided difference: minmod(1.5 lo, (lo + hi)/2, 1.5 hi).
@@ -21,5 +26,6 @@ pub fn minmod<R: Real>(a: R, b: R) -> R {
 /// 0.5007, with 1 0.5006.
 #[inline(always)]
 pub fn central<R: Real>(lo: R, hi: R) -> R {
-    minmod(minmod(lo, hi) * R::of(1.5), (lo + hi) * R::of(0.5))
+    let [rise, fall] = smaller(lo, hi).map(|slope| slope * R::of(1.5));
+    ((lo + hi) * R::of(0.5)).min(rise).max(fall)
 }

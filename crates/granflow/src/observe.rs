@@ -1,35 +1,36 @@
 //! What is kept of a run while it goes: the summary maps.
 
 use crate::backend::Sheet;
+use crate::field::zeros;
 use crate::grid::Layout;
 
-/// Maps over the cells, in the padded layout of the state.
+/// Maps over the cells, in the padded layout of the state, in single precision.
 #[derive(Clone, Debug)]
 pub struct Maps {
     /// Largest thickness normal to the bed so far.
-    pub peak_thickness: Vec<f64>,
+    pub peak_thickness: Vec<f32>,
     /// Largest speed along the bed so far.
-    pub peak_speed: Vec<f64>,
+    pub peak_speed: Vec<f32>,
     /// Time at which the cell was first thicker than a film; NaN before.
-    pub arrival_time: Vec<f64>,
+    pub arrival_time: Vec<f32>,
     /// Time at which the cell last moved; NaN where it never did.
-    pub stopping_time: Vec<f64>,
+    pub stopping_time: Vec<f32>,
 }
 
 impl Maps {
     /// Of all of them.
-    pub(crate) const BYTES_PER_CELL: usize = 4 * size_of::<f64>();
+    pub(crate) const BYTES_PER_CELL: usize = 4 * size_of::<f32>();
     /// Nothing seen yet.
     pub fn new(layout: &Layout) -> Maps {
         Maps {
-            peak_thickness: vec![0.0; layout.len()],
-            peak_speed: vec![0.0; layout.len()],
-            arrival_time: vec![f64::NAN; layout.len()],
-            stopping_time: vec![f64::NAN; layout.len()],
+            peak_thickness: zeros(layout.len()),
+            peak_speed: zeros(layout.len()),
+            arrival_time: vec![f32::NAN; layout.len()],
+            stopping_time: vec![f32::NAN; layout.len()],
         }
     }
     /// The maps with the names that the result files give them.
-    pub fn named(&self) -> impl Iterator<Item = (&'static str, &[f64])> {
+    pub fn named(&self) -> impl Iterator<Item = (&'static str, &[f32])> {
         [
             ("peak_thickness", self.peak_thickness.as_slice()),
             ("peak_speed", &self.peak_speed),
@@ -39,7 +40,7 @@ impl Maps {
         .into_iter()
     }
     /// As [`Maps::named`], to keep.
-    pub fn into_named(self) -> impl Iterator<Item = (&'static str, Vec<f64>)> {
+    pub fn into_named(self) -> impl Iterator<Item = (&'static str, Vec<f32>)> {
         [
             ("peak_thickness", self.peak_thickness),
             ("peak_speed", self.peak_speed),
@@ -49,7 +50,7 @@ impl Maps {
         .into_iter()
     }
     /// As [`Maps::named`], to be overwritten.
-    pub fn named_mut(&mut self) -> impl Iterator<Item = (&'static str, &mut Vec<f64>)> {
+    pub fn named_mut(&mut self) -> impl Iterator<Item = (&'static str, &mut Vec<f32>)> {
         [
             ("peak_thickness", &mut self.peak_thickness),
             ("peak_speed", &mut self.peak_speed),
@@ -58,7 +59,7 @@ impl Maps {
         ]
         .into_iter()
     }
-    pub(crate) fn sheets(&mut self) -> [Sheet<'_>; 4] {
+    pub(crate) fn sheets(&mut self) -> [Sheet<'_, f32>; 4] {
         [
             Sheet::new(&mut self.peak_thickness),
             Sheet::new(&mut self.peak_speed),

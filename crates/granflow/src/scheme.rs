@@ -9,6 +9,10 @@ use crate::real::{Real, each, unroll};
 pub unsafe trait Parts<R: Real>: Copy + Send + Sync + 'static {
     /// How many numbers.
     const COUNT: usize;
+    /// The parts that a grid keeps in single precision, a bit each.
+    const SINGLE: u32 = 0;
+    /// The parts that are the same in all cells of a grid, a bit each: they are kept once.
+    const SHARED: u32 = 0;
     /// Gather the value from its numbers.
     fn gather(part: impl Fn(usize) -> R) -> Self;
     /// Hand the numbers out.

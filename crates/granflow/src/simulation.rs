@@ -10,7 +10,7 @@ use crate::field::Field;
 use crate::grid::{GHOSTS, Grid, Layout};
 pub use crate::lanes::Instructions;
 use crate::observe::Maps;
-use crate::real::Sum;
+use crate::real::{Sum, each};
 use crate::scheme::{Boundary, Cell, Scheme, Spacing, Watch, Window};
 use crate::time::Stages;
 use rayon::prelude::*;
@@ -162,17 +162,15 @@ impl<const D: usize, S: Scheme<D, f64>> Simulation<D, S> {
         grid: Grid<D>,
         stages: Stages,
         step_size: StepSize,
-        ground: impl Fn([usize; D]) -> S::Ground,
-        initial: impl Fn([usize; D]) -> S::State,
+        ground: impl Fn([usize; D]) -> S::Ground + Sync,
+        initial: impl Fn([usize; D]) -> S::State + Sync,
     ) -> Self {
         let layout = Layout::of(&grid);
         let mut bed = Field::zeros::<S::Ground>(&layout);
         let mut now = Field::zeros::<S::State>(&layout);
-        for number in 0..grid.count() {
-            let index = grid.index(number);
-            bed.set(Self::place_in(&layout, index), ground(index));
-            now.set(Self::place_in(&layout, index), initial(index));
-        }
+        let index = |column: usize, row: usize| each!(k => if k == 0 { column } else { row });
+        bed.fill(&layout, |column, row| ground(index(column, row)));
+        now.fill(&layout, |column, row| initial(index(column, row)));
         boundary::fill(&mut bed, &grid, &layout, |axis, g| scheme.mirror_ground(axis, &g));
         let (tiles, across) = cut(&layout);
         let mut simulation = Simulation {
@@ -252,11 +250,7 @@ impl<const D: usize, S: Scheme<D, f64>> Simulation<D, S> {
         let margin = self.layout.margin as isize;
         let start = |j: isize| self.layout.place(columns[0] as isize - GHOSTS as isize, j);
         let width = columns[1] - columns[0] + 2 * GHOSTS;
-        self.grounds.parts.iter().all(|part| {
-            let first = part[start(rows[0] as isize)].to_bits();
-            (rows[0] as isize - margin..rows[1] as isize + margin)
-                .all(|j| part[start(j)..start(j) + width].iter().all(|value| value.to_bits() == first))
-        })
+        self.grounds.is_even((rows[0] as isize - margin..rows[1] as isize + margin).map(start), width)
     }
 
     /// Note the faces of a cell that lead out of the domain.
@@ -499,10 +493,10 @@ impl<const D: usize, S: Scheme<D, f64>> Simulation<D, S> {
         for number in 0..self.grid.count() {
             let index = self.grid.index(number);
             let (place, watch) = (self.place(index), self.watch(index));
-            maps.peak_thickness[place] = watch.thickness;
-            maps.peak_speed[place] = watch.square.sqrt();
+            maps.peak_thickness[place] = watch.thickness as f32;
+            maps.peak_speed[place] = watch.square.sqrt() as f32;
             if watch.volume > 0.0 && watch.film == 0.0 {
-                maps.arrival_time[place] = self.time;
+                maps.arrival_time[place] = self.time as f32;
             }
         }
         self.maps = Some(maps);
@@ -574,8 +568,8 @@ impl<const D: usize, S: Scheme<D, f64>> Simulation<D, S> {
             let sweep = Sweep {
                 layout: self.layout,
                 size: self.grid.size,
-                grounds: self.grounds.view(),
-                from: self.now.view(),
+                grounds: &self.grounds,
+                from: &self.now,
                 dt,
                 keep,
                 last,

@@ -202,7 +202,7 @@ fn down_the_terrain(
     [from, to]: [f64; 2],
     cells: usize,
     end: f64,
-    exact: impl Fn(f64, f64) -> Flow1,
+    exact: impl Fn(f64, f64) -> Flow1 + Sync,
 ) -> f64 {
     let cos = zeta.cos();
     let grid = line(from * cos, to * cos, cells, Boundary::Nothing);

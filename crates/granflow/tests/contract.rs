@@ -346,10 +346,10 @@ fn lowest<const D: usize, S: Scheme<D, f64, State = Flow<D, f64>>>(
 }
 
 /// Piles of very different depth, thin layers, dry cells; velocities up to `fast` in any direction.
-fn wild<const D: usize>(seed: u64, fast: f64) -> impl Fn() -> Flow<D, f64> {
-    let dice = std::cell::RefCell::new(Dice(seed));
-    move || {
-        let mut dice = dice.borrow_mut();
+fn wild<const D: usize>(seed: u64, fast: f64) -> impl Fn([f64; D]) -> Flow<D, f64> {
+    move |x| {
+        let mix = |key: u64, x: &f64| (key ^ x.to_bits()).wrapping_mul(0x9E37_79B9_7F4A_7C15);
+        let mut dice = Dice(x.iter().fold(seed, mix));
         let h = match (dice.roll() * 4.0) as usize {
             0 => 0.0,
             1 => 10_f64.powf(dice.between(-8.0, -1.0)),
@@ -406,13 +406,13 @@ proptest! {
                 None => {
                     let scheme = Kinetic { friction: Coulomb { mu }, ..VERFAHREN_1 };
                     let mut run = Simulation::new(
-                        scheme, line, EULER, StepSize::Courant(1.0), |_| plane([tilt], 0.4), |_| start(),
+                        scheme, line, EULER, StepSize::Courant(1.0), |_| plane([tilt], 0.4), |index| start(line.centre(index)),
                     );
                     alone(|| lowest(&mut run, 60))
                 }
                 Some(order) => {
                     let film = [0.0, 1e-6][film];
-                    let mut run = run(order, (mu, film), order.limit(), line, &[plane([tilt], 0.4); 40], |_, _| start());
+                    let mut run = run(order, (mu, film), order.limit(), line, &[plane([tilt], 0.4); 40], |x, _| start(x));
                     alone(|| lowest(&mut run, 60))
                 }
             };
@@ -428,13 +428,13 @@ proptest! {
         let grounds = vec![plane([x, y], 0.4); sheet.count()];
         let mut published = Simulation::new(
             Kinetic { friction: Coulomb { mu }, ..VERFAHREN_1 },
-            sheet, EULER, StepSize::Courant(1.0), |_| grounds[0], { let start = wild::<2>(seed, fast); move |_| start() },
+            sheet, EULER, StepSize::Courant(1.0), |_| grounds[0], |index| wild(seed, fast)(sheet.centre(index)),
         );
         let least = alone(|| lowest(&mut published, 30));
         prop_assert!(least >= 0.0, "verfahren_1: {:e}", least);
         for order in ORDERS {
             let start = wild::<2>(seed, fast);
-            let mut run = run(order, (mu, [0.0, 1e-6][film]), order.limit(), sheet, &grounds, |_, _| start());
+            let mut run = run(order, (mu, [0.0, 1e-6][film]), order.limit(), sheet, &grounds, |x, _| start(x));
             let least = alone(|| lowest(&mut run, 30));
             prop_assert!(least >= 0.0, "{:?}: {:e}", order, least);
         }
@@ -448,7 +448,7 @@ proptest! {
         let grounds = terrain(&sheet, bumps(bed));
         for order in ORDERS {
             let start = wild::<2>(seed, fast);
-            let mut run = run(order, (mu, [0.0, 1e-6][film]), order.limit(), sheet, &grounds, |_, _| start());
+            let mut run = run(order, (mu, [0.0, 1e-6][film]), order.limit(), sheet, &grounds, |x, _| start(x));
             let before = run.totals().volume;
             let least = alone(|| lowest(&mut run, 30));
             prop_assert!(least >= 0.0, "{:?}: {:e}", order, least);

@@ -28,7 +28,7 @@ fn bits<const D: usize, S: Scheme<D, f64>>(run: &Simulation<D, S>) -> Vec<u64> {
     numbers.extend(run.out());
     numbers.extend(run.drift());
     for (_, map) in run.maps.as_ref().expect("kept from the start").named() {
-        numbers.extend(map);
+        numbers.extend(map.iter().copied().map(f64::from));
     }
     numbers.iter().map(|number| number.to_bits()).collect()
 }

@@ -3,7 +3,7 @@
 use super::scratch::{Row, Scratch};
 use super::tally::{Count, Tally};
 use super::{EXITS, Leak, MOST_PARTS, Sheet, Sweep, Tile};
-use crate::field::MOST;
+use crate::field::{MOST, has};
 use crate::grid::Layout;
 use crate::lanes::{MOST_LANES, Wide, expect};
 use crate::scheme::{Cell, Faces, Parts, Scheme, Side, Spacing, Watch, Window};
@@ -14,12 +14,12 @@ pub(super) struct Strip<'a, const D: usize, L: Wide, T: Scheme<D, L>> {
     layout: Layout,
     scheme: T,
     /// Where the numbers of the states and of the grounds begin.
-    from: [*const f64; MOST],
-    grounds: [*const f64; MOST],
+    from: [*const u8; MOST],
+    grounds: [*const u8; MOST],
     /// All bits; none where one ground stands for all.
     varied: usize,
     to: [*mut f64; MOST_PARTS],
-    maps: Option<&'a [Sheet<'a>; 4]>,
+    maps: Option<&'a [Sheet<'a, f32>; 4]>,
     leaks: &'a [Leak],
     spacing: Spacing<D, L>,
     dt: L,
@@ -39,6 +39,14 @@ pub(super) struct Desk {
 #[derive(Clone, Copy)]
 #[repr(align(64))]
 struct Lane([f64; MOST_LANES]);
+
+impl Lane {
+    /// In single precision, two in the place of one.
+    fn single(value: f32) -> Self {
+        let bits = u64::from(value.to_bits());
+        Lane([f64::from_bits(bits << 32 | bits); MOST_LANES])
+    }
+}
 
 impl Desk {
     #[inline(always)]
@@ -76,12 +84,12 @@ impl<const D: usize, L: Wide, T: Scheme<D, L>> Window<D, L, T::State, T::Ground>
 impl<'a, const D: usize, L: Wide, T: Scheme<D, L>> Strip<'a, D, L, T> {
     /// Compute a rectangle of tiles, `across` side by side, row by row; leave a tally each.
     #[inline(always)]
-    pub(super) fn run<'t>(
+    pub(super) fn run<'t, S: Scheme<D, f64>>(
         sweep: &Sweep<D>,
         scheme: &T,
         tiles: impl Iterator<Item = &'t Tile> + Clone,
         across: usize,
-        (to, maps): (&[Option<Sheet>; MOST_PARTS], Option<&[Sheet; 4]>),
+        (to, maps): (&[Option<Sheet>; MOST_PARTS], Option<&[Sheet<f32>; 4]>),
         tallies: &mut [Tally],
         desk: &mut Desk,
     ) {
@@ -89,18 +97,28 @@ impl<'a, const D: usize, L: Wide, T: Scheme<D, L>> Strip<'a, D, L, T> {
         let Some(Tile { columns, rows, .. }) = tiles.clone().next() else { return };
         let even = tiles.clone().all(|tile| tile.even);
         let place = sweep.layout.place(columns[0] as isize, rows[0] as isize);
-        let mut grounds = sweep.grounds.starts();
+        let mut grounds = sweep.grounds.starts::<S::Ground>();
         if even {
-            for (start, lanes) in grounds.iter_mut().zip(&mut desk.ground).take(T::Ground::COUNT) {
-                // SAFETY: the cell lies inside the layout.
-                *lanes = Lane([unsafe { *start.add(place) }; MOST_LANES]);
-                *start = lanes.0.as_ptr();
+            for (k, (start, lanes)) in
+                grounds.iter_mut().zip(&mut desk.ground).take(T::Ground::COUNT).enumerate()
+            {
+                if !has(T::Ground::SHARED, k) {
+                    // SAFETY: the cell lies inside the layout.
+                    *lanes = unsafe {
+                        if has(T::Ground::SINGLE, k) {
+                            Lane::single(*start.cast::<f32>().add(place))
+                        } else {
+                            Lane([*start.cast::<f64>().add(place); MOST_LANES])
+                        }
+                    };
+                    *start = lanes.0.as_ptr().cast();
+                }
             }
         }
         let strip = Strip {
             layout: sweep.layout,
             scheme: *scheme,
-            from: sweep.from.starts(),
+            from: sweep.from.starts::<S::State>(),
             grounds,
             varied: if even { 0 } else { usize::MAX },
             to: to.each_ref().map(|sheet| sheet.as_ref().map_or(std::ptr::null_mut(), |sheet| sheet.start)),
@@ -121,7 +139,7 @@ impl<'a, const D: usize, L: Wide, T: Scheme<D, L>> Strip<'a, D, L, T> {
         let state = unsafe {
             T::State::gather(
                 #[inline(always)]
-                |k| L::load(self.from.get_unchecked(k).add(place)),
+                |k| L::load(self.from.get_unchecked(k).cast::<f64>().add(place)),
             )
         };
         Cell { state, ground: self.ground(place) }
@@ -133,7 +151,16 @@ impl<'a, const D: usize, L: Wide, T: Scheme<D, L>> Strip<'a, D, L, T> {
         unsafe {
             T::Ground::gather(
                 #[inline(always)]
-                |k| L::load(self.grounds.get_unchecked(k).add(place & self.varied)),
+                |k| {
+                    let (start, place) = (*self.grounds.get_unchecked(k), place & self.varied);
+                    if has(T::Ground::SHARED, k) {
+                        L::of(*start.cast())
+                    } else if has(T::Ground::SINGLE, k) {
+                        L::load_single(start.cast::<f32>().add(place))
+                    } else {
+                        L::load(start.cast::<f64>().add(place))
+                    }
+                },
             )
         }
     }
@@ -235,12 +262,17 @@ impl<'a, const D: usize, L: Wide, T: Scheme<D, L>> Strip<'a, D, L, T> {
         let above = place + self.layout.stride;
         for m in (0..L::WIDTH).step_by(LINE) {
             for k in 0..T::State::COUNT {
-                expect(self.from[k].wrapping_add(above + m));
-                expect(self.to[k].wrapping_add(place + m));
+                expect(self.from[k].cast::<f64>().wrapping_add(above + m).cast());
+                expect(self.to[k].wrapping_add(place + m).cast());
             }
             if self.varied != 0 {
                 for k in 0..T::Ground::COUNT {
-                    expect(self.grounds[k].wrapping_add(above + m));
+                    let start = self.grounds[k];
+                    if has(T::Ground::SINGLE, k) {
+                        expect(start.cast::<f32>().wrapping_add(above + m).cast());
+                    } else if !has(T::Ground::SHARED, k) {
+                        expect(start.cast::<f64>().wrapping_add(above + m).cast());
+                    }
                 }
             }
         }
@@ -407,7 +439,7 @@ impl<'a, const D: usize, L: Wide, T: Scheme<D, L>> Strip<'a, D, L, T> {
     /// # Safety
     /// The places of `live` belong to this tile.
     #[inline(always)]
-    unsafe fn mark(&self, maps: &[Sheet; 4], place: usize, live: L::Mask, watch: &Watch<L>) {
+    unsafe fn mark(&self, maps: &[Sheet<f32>; 4], place: usize, live: L::Mask, watch: &Watch<L>) {
         let [thickness, speed, arrival, stop] = maps;
         let (zero, time) = (L::zero(), L::of(self.time));
         // SAFETY: as the caller promises.

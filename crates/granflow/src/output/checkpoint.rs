@@ -27,7 +27,41 @@ pub struct Checkpoint<'a> {
     /// Numbers of the run: sums of the ledger with their compensation, peaks, the last step size.
     pub scalars: Vec<(String, f64)>,
     /// Fields of the run, any length each.
-    pub arrays: Vec<(String, Cow<'a, [f64]>)>,
+    pub arrays: Vec<(String, Numbers<'a>)>,
+}
+
+/// The numbers of an array. The file has them all in double precision, and so they are read.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Numbers<'a> {
+    /// In double precision.
+    Double(Cow<'a, [f64]>),
+    /// In single precision.
+    Single(&'a [f32]),
+}
+
+impl Numbers<'_> {
+    pub(crate) fn len(&self) -> usize {
+        match self {
+            Numbers::Double(values) => values.len(),
+            Numbers::Single(values) => values.len(),
+        }
+    }
+    /// The same, not more than so many at once.
+    pub(crate) fn chunks(&self, most: usize) -> Vec<Numbers<'_>> {
+        match self {
+            Numbers::Double(values) => values.chunks(most).map(|part| Numbers::Double(part.into())).collect(),
+            Numbers::Single(values) => values.chunks(most).map(Numbers::Single).collect(),
+        }
+    }
+    /// Append them to `bytes` as the file has them.
+    pub(crate) fn encode(&self, bytes: &mut Vec<u8>) {
+        match self {
+            Numbers::Double(values) => Precision::F64.encode(values, bytes),
+            Numbers::Single(values) => {
+                values.iter().for_each(|&value| Precision::F64.encode(&[value.into()], bytes));
+            }
+        }
+    }
 }
 
 #[derive(Serialize, Deserialize)]
@@ -55,7 +89,7 @@ impl Checkpoint<'_> {
             let mut bytes = Vec::new();
             for part in self.arrays.iter().flat_map(|(_, values)| values.chunks(AT_ONCE)) {
                 bytes.clear();
-                Precision::F64.encode(part, &mut bytes);
+                part.encode(&mut bytes);
                 out.write_all(&bytes)?;
             }
             Ok(())
@@ -82,8 +116,8 @@ impl Checkpoint<'_> {
 
     /// The array called `name`.
     #[must_use]
-    pub fn array(&self, name: &str) -> Option<&[f64]> {
-        self.arrays.iter().find(|(own, _)| own == name).map(|(_, values)| values.as_ref())
+    pub fn array(&self, name: &str) -> Option<&Numbers<'_>> {
+        self.arrays.iter().find(|(own, _)| own == name).map(|(_, values)| values)
     }
 
     /// The scalar called `name`.
@@ -164,7 +198,7 @@ impl Checkpoint<'static> {
         let time = front.remove(0);
         let mut arrays = Vec::new();
         for (name, length) in header.arrays {
-            arrays.push((name, file.numbers(length).map_err(unread())?.into()));
+            arrays.push((name, Numbers::Double(file.numbers(length).map_err(unread())?.into())));
         }
         let (computed, mut crc) = (file.crc.clone().finalize(), [0; 4]);
         file.read_exact(&mut crc).map_err(unread())?;
@@ -194,7 +228,10 @@ impl Checkpoint<'static> {
     /// The array called `name`, which is then no longer in the checkpoint.
     pub fn take(&mut self, name: &str) -> Option<Vec<f64>> {
         let place = self.arrays.iter().position(|(own, _)| own == name)?;
-        Some(self.arrays.swap_remove(place).1.into_owned())
+        Some(match self.arrays.swap_remove(place).1 {
+            Numbers::Double(values) => values.into_owned(),
+            Numbers::Single(values) => values.iter().map(|&value| value.into()).collect(),
+        })
     }
 }
 
@@ -231,6 +268,10 @@ mod tests {
     use super::*;
     use std::fs;
 
+    fn double(values: impl IntoIterator<Item = f64>) -> Numbers<'static> {
+        Numbers::Double(values.into_iter().collect())
+    }
+
     fn sample() -> Checkpoint<'static> {
         Checkpoint {
             case: case_hash("title = \"x\""),
@@ -238,9 +279,10 @@ mod tests {
             time: 0.1 + 0.2,
             scalars: vec![("mass".into(), -0.0), ("peak".into(), f64::INFINITY)],
             arrays: vec![
-                ("thickness".into(), vec![1.0, f64::from_bits(0x7ff8_0000_0000_beef), 5e-324].into()),
-                ("nothing".into(), vec![].into()),
-                ("momentum".into(), (0..70_000).map(|i| f64::from(i).sin()).collect()),
+                ("thickness".into(), double([1.0, f64::from_bits(0x7ff8_0000_0000_beef), 5e-324])),
+                ("nothing".into(), double([])),
+                ("momentum".into(), double((0..70_000).map(|i| f64::from(i).sin()))),
+                ("peak_speed".into(), Numbers::Single(&[0.1, f32::MIN_POSITIVE])),
             ],
         }
     }
@@ -251,14 +293,19 @@ mod tests {
         let path = folder.path().join("checkpoint/state");
         let written = sample();
         written.write(&path).unwrap();
-        let read = Checkpoint::read(&path, &written.case).unwrap();
-        let bits = |values: Option<&[f64]>| values.unwrap().iter().map(|v| v.to_bits()).collect::<Vec<_>>();
+        let mut read = Checkpoint::read(&path, &written.case).unwrap();
+        let bytes = |numbers: Option<&Numbers>| {
+            let mut bytes = Vec::new();
+            numbers.unwrap().encode(&mut bytes);
+            bytes
+        };
         assert_eq!((read.step, read.time.to_bits()), (u64::MAX, written.time.to_bits()));
         assert_eq!(read.scalar("mass").unwrap().to_bits(), (-0.0_f64).to_bits());
         assert_eq!(read.scalars, written.scalars);
-        for name in ["thickness", "nothing", "momentum"] {
-            assert_eq!(bits(read.array(name)), bits(written.array(name)), "{name}");
+        for name in ["thickness", "nothing", "momentum", "peak_speed"] {
+            assert_eq!(bytes(read.array(name)), bytes(written.array(name)), "{name}");
         }
+        assert_eq!(read.take("peak_speed").unwrap(), [f64::from(0.1_f32), f64::from(f32::MIN_POSITIVE)]);
         assert!(read.array("absent").is_none());
     }
 

@@ -5,14 +5,13 @@ use super::writer::Writer;
 use super::{Run, RunError, Work};
 use crate::field::Field;
 use crate::output;
-use crate::output::checkpoint::{Checkpoint, case_hash};
+use crate::output::checkpoint::{Checkpoint, Numbers, case_hash};
 use crate::output::frames::Frames;
 use crate::output::ledger::Ledger;
 use crate::results::Plane;
 use crate::scheme::Scheme;
 use crate::setup::Sand;
 use crate::simulation::{CLOCK, Simulation};
-use std::borrow::Cow;
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
@@ -117,10 +116,10 @@ impl<'s, const D: usize, S: Model<D>> Run<'_, 's, D, S> {
         ];
         scalars.extend(simulation.clock().iter().enumerate().map(|(k, v)| (format!("clock_{k}"), *v)));
         let state = simulation.arrays().parts.iter().enumerate();
-        let mut arrays: Vec<(String, Cow<[f64]>)> =
-            state.map(|(k, part)| (format!("state_{k}"), Cow::from(part))).collect();
+        let mut arrays: Vec<(String, Numbers)> =
+            state.map(|(k, part)| (format!("state_{k}"), Numbers::Double(part.into()))).collect();
         if let Some(maps) = &simulation.maps {
-            arrays.extend(maps.named().map(|(name, map)| (name.to_owned(), Cow::from(map))));
+            arrays.extend(maps.named().map(|(name, map)| (name.to_owned(), Numbers::Single(map))));
         }
         self.writer.checkpoint(&Checkpoint {
             case: case_hash(&self.work.case.text()),
@@ -150,13 +149,15 @@ fn restore<const D: usize, S: Scheme<D, f64>>(
     let clock: Vec<f64> = (0..CLOCK).map_while(|k| saved.scalar(&format!("clock_{k}"))).collect();
     let part = |k: usize| saved.take(&format!("state_{k}"));
     let parts: Vec<Vec<f64>> = (0..simulation.arrays().parts.len()).map_while(part).collect();
-    if !simulation.restore(&clock, Field { parts }) {
+    if !simulation.restore(&clock, Field::of(parts)) {
         return Some("its state has another shape".to_owned());
     }
     if let Some(maps) = &mut simulation.maps {
         for (name, map) in maps.named_mut() {
             match saved.take(name) {
-                Some(values) if values.len() == map.len() => map.copy_from_slice(&values),
+                Some(values) if values.len() == map.len() => {
+                    map.iter_mut().zip(values).for_each(|(kept, value)| *kept = value as f32);
+                }
                 _ => return Some(format!("its map {name} is missing or has another shape")),
             }
         }

@@ -5,7 +5,7 @@
 //! steps wait only while all are still to be written.
 
 use super::ending::Ending;
-use crate::output::checkpoint::{self, Checkpoint};
+use crate::output::checkpoint::{self, Checkpoint, Numbers};
 use crate::output::frames::Frames;
 use crate::output::ledger::{Entry, Ledger};
 use crate::output::{Error, Precision};
@@ -84,12 +84,12 @@ impl Writer {
 
     /// Save a checkpoint. When this returns it has been copied.
     pub fn checkpoint(&mut self, checkpoint: &Checkpoint) -> Result<(), Error> {
-        let parts: Vec<&[f64]> =
-            checkpoint.arrays.iter().flat_map(|(_, values)| values.chunks(NUMBERS)).collect();
-        let numbers: usize = parts.iter().map(|part| part.len()).sum();
+        let arrays = checkpoint.arrays.iter().map(|(_, values)| values);
+        let parts: Vec<Numbers> = arrays.clone().flat_map(|values| values.chunks(NUMBERS)).collect();
+        let numbers: usize = arrays.map(Numbers::len).sum();
         let head = checkpoint.head();
         self.send(Order::Checkpoint { head, bytes: numbers * Precision::F64.width() })?;
-        self.pieces(&parts, |part, bytes| Precision::F64.encode(part, bytes))
+        self.pieces(&parts, Numbers::encode)
     }
 
     /// Join what there is into `result.nc`; see [`Writer::joined`].

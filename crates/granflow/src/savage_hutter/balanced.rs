@@ -405,7 +405,7 @@ where
             let u = state.velocity();
             return each!(axis => Density::mean(u[axis]));
         }
-        each!(axis => Density::new(state.h.positive(), state.q[axis], ground.beta(axis)))
+        Density::new(state.h.positive(), state.q, each!(axis => ground.beta(axis)))
     }
 
     #[inline(always)]
@@ -480,8 +480,7 @@ where
                 push_b = R::select(right_held, zero, reflected_b);
             }
             let (mass_a, mass_b) = (half_a.mass * share_a, half_b.mass * share_b);
-            let turned_a = B::turn(u_a, &left.plane, &right.plane);
-            let turned_b = B::turn(u_b, &right.plane, &left.plane);
+            let [turned_a, turned_b] = B::turn([u_a, u_b], [&left.plane, &right.plane]);
             flux.mass = mass_a + mass_b;
             unroll!(k in D => {
                 flux.left[k] = mass_a * u_a[k] + mass_b * turned_b[k];
@@ -557,7 +556,8 @@ where
         if B::BENT {
             let cross = bed.cross(weight_lo, weight_hi, per);
             unroll!(k in D => {
-                pull[k] = pull[k] + cross[k] + bed.bend(k) * h * bend[k];
+                let change = bed.bend(k, &near.lo[k].ground, &near.hi[k].ground, per[k]);
+                pull[k] = pull[k] + cross[k] + change * h * bend[k];
             });
         }
         unroll!(k in D => {

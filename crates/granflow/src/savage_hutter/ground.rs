@@ -1,6 +1,6 @@
 //! What is fixed in a cell: the papers' chute, or a piece of a mountain.
 
-use crate::real::{Real, dot, unroll};
+use crate::real::{Real, dot, each, unroll};
 use crate::scheme::{Parts, parts};
 use crate::terrain::Terrain as Mountain;
 
@@ -41,8 +41,9 @@ pub trait Bed<const D: usize, R: Real>: Parts<R> {
     fn pull(&self, lo: [R; D], hi: [R; D], per: [R; D]) -> [R; D];
     /// The part of [`Bed::pull`] that a pressure along the other axes makes (off the diagonal of M).
     fn cross(&self, lo: [R; D], hi: [R; D], per: [R; D]) -> [R; D];
-    /// Acceleration per depth that the change of beta and of the bed's tilt along `axis` leaves beside the flux.
-    fn bend(&self, axis: usize) -> R;
+    /// Acceleration per depth that the change of beta and of the bed's tilt between the neighbours along `axis` leaves beside
+    /// the flux; 1/dx is `per`.
+    fn bend(&self, axis: usize, lo: &Self, hi: &Self, per: R) -> R;
     /// Normal acceleration under a mass of velocity `w`, N+ = max(N, 0).
     fn load(&self, w: [R; D]) -> R;
     /// Normal acceleration at rest.
@@ -51,8 +52,8 @@ pub trait Bed<const D: usize, R: Real>: Parts<R> {
     fn square(&self, v: [R; D]) -> R;
     /// Length along the bed of a unit step along `axis`.
     fn stretch(&self, axis: usize) -> R;
-    /// `w` turned from one tangent plane into another, at the same speed along the bed.
-    fn turn(w: [R; D], from: &Self::Plane, to: &Self::Plane) -> [R; D];
+    /// The velocities in two tangent planes, each turned into the other's at the same speed along the bed.
+    fn turn(w: [[R; D]; 2], planes: [&Self::Plane; 2]) -> [[R; D]; 2];
     /// Thickness normal to the bed.
     fn thickness(&self, h: R) -> R;
     /// Rounding of a rise divided by dx: the uncertainty of the pull.
@@ -143,7 +144,7 @@ impl<const D: usize, R: Real> Bed<D, R> for Chute<D, R> {
         [R::zero(); D]
     }
     #[inline(always)]
-    fn bend(&self, _axis: usize) -> R {
+    fn bend(&self, _axis: usize, _lo: &Self, _hi: &Self, _per: R) -> R {
         R::zero()
     }
     #[inline(always)]
@@ -163,7 +164,7 @@ impl<const D: usize, R: Real> Bed<D, R> for Chute<D, R> {
         R::of(1.0)
     }
     #[inline(always)]
-    fn turn(w: [R; D], _from: &(), _to: &()) -> [R; D] {
+    fn turn(w: [[R; D]; 2], _planes: [&(); 2]) -> [[R; D]; 2] {
         w
     }
     #[inline(always)]
@@ -191,42 +192,44 @@ impl<const D: usize, R: Real> Bed<D, R> for Chute<D, R> {
 /// A cell of a terrain z = b(x, y), SI units (Bouchut & Westdickenberg, Commun. Math. Sci. 2, 2004, for the true
 /// horizontal velocity w and the volume per plan area H = h/c).
 ///
-/// psi = g (b + c^2 H), M = I - s s^T, s = c grad b, beta = g c^2 (1 - s_axis^2). A cell outside the data has c = 0.
+/// psi = g (b + c^2 H), M = I - s s^T, s = c grad b, beta = g c^2 (1 - s_axis^2). A cell outside the data has c = 0. A grid
+/// keeps all but b and g in single precision: 6e-8 of a slope.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Terrain<const D: usize, R> {
-    /// g b \[m^2/s^2\].
+    /// b \[m\].
     pub level: R,
     /// grad b.
     pub slope: [R; D],
     /// c = 1/sqrt(1 + |grad b|^2).
     pub cos: R,
-    /// g c \[m/s^2\].
-    pub fall: R,
     /// c D^2 b \[1/m\]; only the upper triangle is stored.
     pub curvature: [[R; D]; D],
-    /// See [`Bed::bend`]: (beta_hi - beta_lo)/(4 dx) - g (1 - s^2) (c_hi^2 - c_lo^2)/(2 dx).
-    pub bend: [R; D],
+    /// g \[m/s^2\], the same in all cells, also outside the data.
+    pub gravity: R,
 }
 
 impl<const D: usize, R: Real> Terrain<D, R> {
     /// A cell outside the data.
     #[inline(always)]
-    pub fn nothing() -> Self {
+    pub fn nothing(gravity: R) -> Self {
         let zero = R::zero();
-        Terrain {
-            level: zero,
-            slope: [zero; D],
-            cos: zero,
-            fall: zero,
-            curvature: [[zero; D]; D],
-            bend: [zero; D],
-        }
+        Terrain { level: zero, slope: [zero; D], cos: zero, curvature: [[zero; D]; D], gravity }
     }
     /// The part in which the second derivative along axes i and j is kept.
     #[inline(always)]
     fn packed(i: usize, j: usize) -> usize {
         let (i, j) = if i < j { (i, j) } else { (j, i) };
-        3 + 2 * D + i * D + j - i * (i + 1) / 2
+        2 + D + i * D + j - i * (i + 1) / 2
+    }
+    /// g c \[m/s^2\].
+    #[inline(always)]
+    fn fall(&self) -> R {
+        self.gravity * self.cos
+    }
+    /// g c^2 \[m/s^2\]: pressure at the bed of a column of H = 1, beta across the slope.
+    #[inline(always)]
+    fn head(&self) -> R {
+        self.gravity * (self.cos * self.cos)
     }
     #[inline(always)]
     fn metric(&self, mut v: [R; D]) -> [R; D] {
@@ -240,55 +243,28 @@ impl<const D: usize, R: Real> Terrain<D, R> {
 
 impl Terrain<2, f64> {
     /// The ground of a cell of a mountain under `gravity` \[m/s^2\], by column and row, the first row in the south.
-    pub fn at(mountain: &Mountain, gravity: f64, cell: [usize; 2]) -> Self {
-        let mut here = Self::unbent(mountain, gravity, cell);
-        let count = [mountain.bed.columns, mountain.bed.rows];
-        for axis in 0..2 {
-            if cell[axis] == 0 || cell[axis] + 1 == count[axis] {
-                continue;
-            }
-            let (mut lo, mut hi) = (cell, cell);
-            (lo[axis], hi[axis]) = (cell[axis] - 1, cell[axis] + 1);
-            let [lo, hi] = [lo, hi].map(|cell| Self::unbent(mountain, gravity, cell));
-            if !(lo.outside() || hi.outside() || here.outside()) {
-                let s = here.cos * here.slope[axis];
-                let pressure = (hi.beta(axis) - lo.beta(axis)) / (4.0 * mountain.bed.cell);
-                let tilt = (hi.fall * hi.cos - lo.fall * lo.cos) / (2.0 * mountain.bed.cell);
-                here.bend[axis] = pressure - (1.0 - s * s) * tilt;
-            }
-        }
-        here
-    }
-
-    /// As [`Terrain::at`], without what the neighbours bend.
-    fn unbent(mountain: &Mountain, gravity: f64, [column, row]: [usize; 2]) -> Self {
-        let z = mountain.bed.at(column, row);
-        if z.is_nan() {
-            return Self::nothing();
+    pub fn at(mountain: &Mountain, gravity: f64, [column, row]: [usize; 2]) -> Self {
+        let level = mountain.bed.at(column, row);
+        if level.is_nan() {
+            return Self::nothing(gravity);
         }
         let fit = mountain.fit([column, row]);
         let cos = fit.cosine();
         let [xx, xy, yy] = fit.hessian.map(|second| cos * second);
-        Terrain {
-            level: gravity * z,
-            slope: fit.gradient,
-            cos,
-            fall: gravity * cos,
-            curvature: [[xx, xy], [xy, yy]],
-            bend: [0.0; 2],
-        }
+        Terrain { level, slope: fit.gradient, cos, curvature: [[xx, xy], [xy, yy]], gravity }
     }
 }
 
 // SAFETY: the parts are numbered below COUNT.
 unsafe impl<const D: usize, R: Real> Parts<R> for Terrain<D, R> {
-    const COUNT: usize = 3 + 2 * D + D * (D + 1) / 2;
+    const COUNT: usize = 3 + D + D * (D + 1) / 2;
+    const SHARED: u32 = 1 << (Self::COUNT - 1);
+    const SINGLE: u32 = Self::SHARED - 2;
     #[inline(always)]
     fn gather(part: impl Fn(usize) -> R) -> Self {
-        let mut cell = Terrain { level: part(0), cos: part(1), fall: part(2), ..Terrain::nothing() };
+        let mut cell = Terrain { level: part(0), cos: part(1), ..Terrain::nothing(part(Self::COUNT - 1)) };
         unroll!(i in D => {
-            cell.slope[i] = part(3 + i);
-            cell.bend[i] = part(3 + D + i);
+            cell.slope[i] = part(2 + i);
             unroll!(j in D => {
                 cell.curvature[i][j] = part(Self::packed(i, j));
             });
@@ -299,16 +275,15 @@ unsafe impl<const D: usize, R: Real> Parts<R> for Terrain<D, R> {
     fn scatter(self, mut put: impl FnMut(usize, R)) {
         put(0, self.level);
         put(1, self.cos);
-        put(2, self.fall);
         unroll!(i in D => {
-            put(3 + i, self.slope[i]);
-            put(3 + D + i, self.bend[i]);
+            put(2 + i, self.slope[i]);
             unroll!(j in D => {
                 if j >= i {
                     put(Self::packed(i, j), self.curvature[i][j]);
                 }
             });
         });
+        put(Self::COUNT - 1, self.gravity);
     }
 }
 
@@ -316,9 +291,41 @@ unsafe impl<const D: usize, R: Real> Parts<R> for Terrain<D, R> {
 #[derive(Clone, Copy, Debug)]
 pub struct Tangent<const D: usize, R> {
     slope: [R; D],
-    cos: R,
+    /// c^2
+    square: R,
 }
-parts!([const D: usize, R: Real] Tangent<D, R> { slope: [R; D], cos: R } masks {});
+parts!([const D: usize, R: Real] Tangent<D, R> { slope: [R; D], square: R } masks {});
+
+/// 1/sqrt(1 - t) for t in \[0, 1): a series without roots and divisions up to t = 1/32, planes at 10 degrees to each other.
+#[inline(always)]
+fn stretch<R: Real>(t: R) -> R {
+    /// (2 k over k)/4^k, from the last: the next is below 1e-16 at 1/32.
+    const SERIES: [f64; 10] = [
+        46189.0 / 262144.0,
+        12155.0 / 65536.0,
+        6435.0 / 32768.0,
+        429.0 / 2048.0,
+        231.0 / 1024.0,
+        63.0 / 256.0,
+        35.0 / 128.0,
+        5.0 / 16.0,
+        3.0 / 8.0,
+        0.5,
+    ];
+    let one = R::of(1.0);
+    let mut sum = R::of(SERIES[0]);
+    for coefficient in &SERIES[1..] {
+        sum = sum.mul_add(t, R::of(*coefficient));
+    }
+    sum = sum.mul_add(t, one);
+    let far = R::of(1.0 / 32.0).lt(t);
+    if R::any(far) {
+        let steep = one.le(t);
+        let exact = one / (one - R::select(steep, R::zero(), t)).sqrt();
+        sum = R::select(far, exact, sum);
+    }
+    sum
+}
 
 impl<const D: usize, R: Real> Bed<D, R> for Terrain<D, R> {
     type On<L: Real> = Terrain<D, L>;
@@ -326,20 +333,20 @@ impl<const D: usize, R: Real> Bed<D, R> for Terrain<D, R> {
     const BENT: bool = true;
     #[inline(always)]
     fn plane(&self) -> Tangent<D, R> {
-        Tangent { slope: self.slope, cos: self.cos }
+        Tangent { slope: self.slope, square: self.cos * self.cos }
     }
     #[inline(always)]
     fn beta(&self, axis: usize) -> R {
         let s = self.cos * self.slope[axis];
-        self.fall * self.cos * (R::of(1.0) - s * s)
+        self.head() * (R::of(1.0) - s * s)
     }
     #[inline(always)]
     fn climb(&self, _axis: usize, _towards: Towards, there: &Self, _dx: R) -> R {
-        there.level - self.level
+        self.gravity * (there.level - self.level)
     }
     #[inline(always)]
     fn weight(&self, there: &Self, h: R, h_there: R) -> R {
-        there.fall * there.cos * h_there - self.fall * self.cos * h
+        there.head() * h_there - self.head() * h
     }
     #[inline(always)]
     fn pull(&self, lo: [R; D], hi: [R; D], per: [R; D]) -> [R; D] {
@@ -358,8 +365,14 @@ impl<const D: usize, R: Real> Bed<D, R> for Terrain<D, R> {
         cross
     }
     #[inline(always)]
-    fn bend(&self, axis: usize) -> R {
-        self.bend[axis]
+    fn bend(&self, axis: usize, lo: &Self, hi: &Self, per: R) -> R {
+        // (beta_hi - beta_lo)/(4 dx) - g (1 - s^2) (c_hi^2 - c_lo^2)/(2 dx), 0 beside the edge of the data.
+        let s = self.cos * self.slope[axis];
+        let pressure = (hi.beta(axis) - lo.beta(axis)) * (per * R::of(0.25));
+        let tilt = (hi.head() - lo.head()) * (per * R::of(0.5));
+        let bend = pressure - (R::of(1.0) - s * s) * tilt;
+        let beside = hi.outside() | lo.outside();
+        R::select(beside, R::zero(), bend)
     }
     #[inline(always)]
     fn load(&self, w: [R; D]) -> R {
@@ -367,11 +380,11 @@ impl<const D: usize, R: Real> Bed<D, R> for Terrain<D, R> {
         unroll!(axis in D => {
             bent = bent + w[axis] * dot(self.curvature[axis], w);
         });
-        (self.fall + bent).positive()
+        (self.fall() + bent).positive()
     }
     #[inline(always)]
     fn weight_at_rest(&self) -> R {
-        self.fall
+        self.fall()
     }
     #[inline(always)]
     fn square(&self, v: [R; D]) -> R {
@@ -383,20 +396,23 @@ impl<const D: usize, R: Real> Bed<D, R> for Terrain<D, R> {
         (R::of(1.0) + self.slope[axis] * self.slope[axis]).sqrt()
     }
     #[inline(always)]
-    fn turn(w: [R; D], from: &Tangent<D, R>, to: &Tangent<D, R>) -> [R; D] {
+    fn turn(w: [[R; D]; 2], planes: [&Tangent<D, R>; 2]) -> [[R; D]; 2] {
+        /// Slower than 1e-75 m/s is no speed.
+        const LEAST: f64 = 1e-150;
         // V = (w, grad b . w); what sticks out of the receiver's plane is cut off and the rest stretched to |V|.
-        let up = dot(from.slope, w);
-        let out = up - dot(to.slope, w);
-        let c2 = to.cos * to.cos;
-        let whole = dot(w, w) + up * up;
-        let left = whole - c2 * (out * out);
-        let flat = left.le(R::zero());
-        let stretch = R::select(flat, R::of(1.0), (whole / R::select(flat, R::of(1.0), left)).sqrt());
-        let mut turned = w;
-        unroll!(axis in D => {
-            turned[axis] = (w[axis] + c2 * out * to.slope[axis]) * stretch;
+        let up: [R; 2] = each!(side => dot(planes[side].slope, w[side]));
+        let out: [R; 2] = each!(side => up[side] - dot(planes[1 - side].slope, w[side]));
+        let whole: [R; 2] = each!(side => {
+            let square = dot(w[side], w[side]) + up[side] * up[side];
+            R::select(square.lt(R::of(LEAST)), R::of(1.0), square)
         });
-        turned
+        let per = R::of(1.0) / (whole[0] * whole[1]);
+        each!(side => {
+            let to = planes[1 - side];
+            let cut = to.square * out[side];
+            let stretch = stretch((cut * out[side]) * (whole[1 - side] * per));
+            each!(axis => (w[side][axis] + cut * to.slope[axis]) * stretch)
+        })
     }
     #[inline(always)]
     fn thickness(&self, h: R) -> R {
@@ -405,7 +421,7 @@ impl<const D: usize, R: Real> Bed<D, R> for Terrain<D, R> {
     #[inline(always)]
     fn rounding(&self, h: R, per: R) -> R {
         // 1e-14 g (|eta| + dx)/dx
-        R::of(1e-14) * ((self.level.abs() + self.fall * self.cos * h) * per + self.fall / self.cos)
+        R::of(1e-14) * ((self.gravity * self.level.abs() + self.head() * h) * per + self.gravity)
     }
     #[inline(always)]
     fn elevation(&self) -> R {
@@ -417,7 +433,6 @@ impl<const D: usize, R: Real> Bed<D, R> for Terrain<D, R> {
     }
     fn mirror(mut self, axis: usize) -> Self {
         self.slope[axis] = -self.slope[axis];
-        self.bend[axis] = -self.bend[axis];
         unroll!(other in D => {
             if other != axis {
                 self.curvature[axis][other] = -self.curvature[axis][other];

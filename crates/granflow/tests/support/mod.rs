@@ -87,46 +87,26 @@ pub struct Surface<const D: usize> {
     pub bent: [[f64; D]; D],
 }
 
-/// The grounds of a grid over `bed`, which answers `None` outside the data; `bend` by central differences of
-/// beta and c^2 as [`Terrain`] documents, 0 beside the edge of the data.
+/// The ground of a bed at one point.
+pub fn ground<const D: usize>(Surface { z, slope, bent }: Surface<D>) -> Terrain<D, f64> {
+    let cos = 1.0 / (1.0 + slope.iter().map(|s| s * s).sum::<f64>()).sqrt();
+    Terrain { level: z, slope, cos, curvature: bent.map(|row| row.map(|b| cos * b)), gravity: GRAVITY }
+}
+
+/// The grounds of a grid over `bed`, which answers `None` outside the data, rounded as a grid keeps them.
 pub fn terrain<const D: usize>(
     grid: &Grid<D>,
     bed: impl Fn([f64; D]) -> Option<Surface<D>>,
 ) -> Vec<Terrain<D, f64>> {
-    let at = |centre: [f64; D]| match bed(centre) {
-        None => Terrain::nothing(),
-        Some(Surface { z, slope, bent }) => {
-            let cos = 1.0 / (1.0 + slope.iter().map(|s| s * s).sum::<f64>()).sqrt();
-            Terrain {
-                level: GRAVITY * z,
-                slope,
-                cos,
-                fall: GRAVITY * cos,
-                curvature: bent.map(|row| row.map(|b| cos * b)),
-                bend: [0.0; D],
-            }
-        }
+    let single = |value: f64| f64::from(value as f32);
+    let kept = |ground: Terrain<D, f64>| Terrain {
+        slope: ground.slope.map(single),
+        cos: single(ground.cos),
+        curvature: ground.curvature.map(|row| row.map(single)),
+        ..ground
     };
-    (0..grid.count())
-        .map(|number| {
-            let centre = grid.centre(grid.index(number));
-            let mut here = at(centre);
-            for axis in 0..D {
-                let dx = grid.size[axis];
-                let (mut lo, mut hi) = (centre, centre);
-                lo[axis] -= dx;
-                hi[axis] += dx;
-                let (lo, hi) = (at(lo), at(hi));
-                if here.cos > 0.0 && lo.cos > 0.0 && hi.cos > 0.0 {
-                    let tilt = 1.0 - (here.cos * here.slope[axis]).powi(2);
-                    let beta = Bed::<D, f64>::beta(&hi, axis) - Bed::<D, f64>::beta(&lo, axis);
-                    here.bend[axis] =
-                        beta / (4.0 * dx) - GRAVITY * tilt * (hi.cos.powi(2) - lo.cos.powi(2)) / (2.0 * dx);
-                }
-            }
-            here
-        })
-        .collect()
+    let at = |centre| bed(centre).map_or(Terrain::nothing(GRAVITY), |surface| kept(ground(surface)));
+    (0..grid.count()).map(|number| at(grid.centre(grid.index(number)))).collect()
 }
 
 /// A run of the default scheme over given grounds, one for each cell.
@@ -136,7 +116,7 @@ pub fn run<const D: usize, B: Bed<D, f64>>(
     step: StepSize,
     grid: Grid<D>,
     grounds: &[B],
-    start: impl Fn([f64; D], &B) -> Flow<D, f64>,
+    start: impl Fn([f64; D], &B) -> Flow<D, f64> + Sync,
 ) -> Run<D, B> {
     let number = |index: [usize; D]| index[0] + if D > 1 { index[D - 1] * grid.cells[0] } else { 0 };
     Simulation::new(
@@ -156,7 +136,7 @@ pub fn on_plane<const D: usize>(
     step: StepSize,
     grid: Grid<D>,
     ground: Chute<D, f64>,
-    start: impl Fn([f64; D]) -> Flow<D, f64>,
+    start: impl Fn([f64; D]) -> Flow<D, f64> + Sync,
 ) -> Run<D, Chute<D, f64>> {
     run(order, friction, step, grid, &vec![ground; grid.count()], |x, _| start(x))
 }
