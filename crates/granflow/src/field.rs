@@ -22,6 +22,12 @@ pub(crate) const fn has(parts: u32, k: usize) -> bool {
     parts >> k & 1 == 1
 }
 
+/// Bytes that a grid keeps of a value in each cell.
+pub(crate) const fn bytes_per_cell<P: Parts<f64>>() -> usize {
+    let (singles, shared) = (P::SINGLE.count_ones() as usize, P::SHARED.count_ones() as usize);
+    (P::COUNT - shared - singles) * size_of::<f64>() + singles * size_of::<f32>()
+}
+
 impl Field {
     /// Zeros for values of type `P`.
     pub fn zeros<P: Parts<f64>>(layout: &Layout) -> Field {

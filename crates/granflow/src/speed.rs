@@ -161,8 +161,8 @@ mod tests {
         assert_eq!(traffic("balanced_1d"), Traffic { read: 16.0, written: 16.0, allocated: 16.0 });
         // The second stage reads the state at the start of the step instead of allocating.
         assert_eq!(traffic("balanced_2"), Traffic { read: 72.0, written: 48.0, allocated: 24.0 });
-        // Ten numbers of a terrain in every cell.
-        assert_eq!(traffic("balanced_terrain").read, 24.0 + 80.0);
+        // Of a terrain the elevation in every cell, and six numbers in single precision.
+        assert_eq!(traffic("balanced_terrain").read, 24.0 + 8.0 + 24.0);
         // Only the tiles at the edges of the table see another ground than that of the middle.
         let pile = traffic("first_order");
         assert!((16.0..48.0).contains(&pile.read), "{pile:?}");

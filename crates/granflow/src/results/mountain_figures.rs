@@ -99,29 +99,58 @@ pub(super) fn top(values: impl Iterator<Item = f64>) -> f64 {
 }
 
 /// What one map shows over the mountain.
-struct Layer {
+struct Layer<'s> {
     name: &'static str,
     label: &'static str,
     unit: &'static str,
     colours: Colours,
-    threshold: f64,
-    shown: Vec<f64>,
-    /// Where its colours end.
+    values: &'s [f64],
+    /// Shown is where this is thick.
+    thickness: &'s [f64],
+    /// The largest value that is shown, and where the colours end.
+    most: f64,
     limit: f64,
 }
 
-impl Layer {
+impl Layer<'_> {
+    fn is_thickness(&self) -> bool {
+        matches!(self.name, "peak_thickness" | "deposit")
+    }
+
+    fn threshold(&self) -> f64 {
+        if self.is_thickness() { REACHED } else { -0.5 }
+    }
+
+    /// The values as they are shown, while they are. Films are fast and thin: a figure shows what a person would see.
+    fn shown(&self) -> Vec<f64> {
+        let value = |(&v, &h): (&f64, &f64)| match v {
+            _ if self.is_thickness() => v,
+            v if h > REACHED && v.is_finite() => v,
+            _ => NOWHERE,
+        };
+        self.values.iter().zip(self.thickness).map(value).collect()
+    }
+
+    /// Find its range.
+    fn ranged(mut self) -> Self {
+        let shown = self.shown();
+        let least = if self.is_thickness() { REACHED } else { 0.0 };
+        self.limit = top(shown.iter().copied().filter(|&v| v > least));
+        self.most = shown.iter().fold(0.0_f64, |most, v| most.max(*v));
+        self
+    }
+
     fn outlines<'a>(&self, ground: &'a Ground) -> Vec<Outline<'a>> {
         ground.outlines(self.name == "deposit", self.name == "deposit")
     }
 
-    /// Its map, without words and relief.
-    fn map<'a>(&'a self, ground: &'a Ground, outlines: &'a [Outline]) -> Map<'a> {
+    /// Its map of what is shown, without words and relief.
+    fn map<'a>(&self, shown: &'a [f64], ground: &'a Ground, outlines: &'a [Outline]) -> Map<'a> {
         let most = if self.limit > 0.0 { self.limit } else { 1.0 };
         let overlay = Overlay {
-            values: &self.shown,
+            values: shown,
             quantity: Axis::new(self.label, self.unit).over(0.0, most),
-            threshold: self.threshold,
+            threshold: self.threshold(),
             colours: self.colours,
         };
         Map { extent: ground.extent, bed: ground.bed, overlay: Some(overlay), outlines, ..Default::default() }
@@ -142,38 +171,20 @@ pub(super) fn mountain<'a>(story: &'a Story<'a>) -> Vec<Drawing<'a>> {
         ("arrival_time", "arrival time", "s", Colours::Viridis),
     ];
     let layers = plan.into_iter().filter_map(|(name, label, unit, colours)| {
-        let map = story.map(name)?;
-        // Films are fast and thin: a figure shows what a person would see.
-        let thick = if name == "deposit" { map } else { peak };
-        let layer = matches!(name, "peak_thickness" | "deposit");
-        let value = |(&v, &h): (&f64, &f64)| match v {
-            _ if layer => v,
-            v if h > REACHED && v.is_finite() => v,
-            _ => NOWHERE,
-        };
-        let shown: Vec<f64> = map.iter().zip(thick).map(value).collect();
-        let least = if layer { REACHED } else { 0.0 };
-        let limit = top(shown.iter().copied().filter(|&v| v > least));
-        Some(Layer {
-            name,
-            label,
-            unit,
-            colours,
-            threshold: if layer { REACHED } else { -0.5 },
-            shown,
-            limit,
-        })
+        let values = story.map(name)?;
+        let thickness = if name == "deposit" { values } else { peak };
+        Some(Layer { name, label, unit, colours, values, thickness, most: 0.0, limit: 0.0 }.ranged())
     });
     let layers: Vec<Layer> = layers.collect();
     // Before the maps are drawn side by side: most of them show the same box of the mountain.
-    let relief =
-        layers.first().and_then(|layer| layer.map(&ground, &layer.outlines(&ground)).mountain().ok());
+    let relief = layers
+        .first()
+        .and_then(|layer| layer.map(&layer.shown(), &ground, &layer.outlines(&ground)).mountain().ok());
     let relief = Arc::new(relief);
     let mut drawings = Vec::new();
     for layer in layers {
-        let Layer { name, label, unit, limit, .. } = layer;
+        let Layer { name, label, unit, most, limit, .. } = layer;
         let (ground, relief) = (ground.clone(), relief.clone());
-        let most = layer.shown.iter().fold(0.0_f64, |most, v| most.max(*v));
         let clipped =
             if limit < most { ", colours end at the value that 0.2 % of the cells exceed" } else { "" };
         let of = if name == "deposit" { "where it is" } else { "where the flow was" };
@@ -184,8 +195,8 @@ pub(super) fn mountain<'a>(story: &'a Story<'a>) -> Vec<Drawing<'a>> {
         let mut caption = format!("{what}; shown {of} thicker than {REACHED} m{lines}.");
         caption[..1].make_ascii_uppercase();
         drawings.push(Drawing::new(name, caption, move || {
-            let outlines = layer.outlines(&ground);
-            let map = layer.map(&ground, &outlines);
+            let (outlines, shown) = (layer.outlines(&ground), layer.shown());
+            let map = layer.map(&shown, &ground, &outlines);
             Map { title: &story.title, subtitle: &subtitle, relief: relief.as_ref().as_ref(), ..map }.draw()
         }));
     }

@@ -22,7 +22,7 @@ pub struct Story<'a> {
     pub plane: Plane,
     /// The instants that are kept: all in one dimension, the first and the last otherwise.
     pub times: Vec<f64>,
-    /// What is shown of each of them, by name: `thickness` and, in one dimension, `velocity_x`; on a table
+    /// What is shown of each of them, by name: on a chute `thickness` and, in one dimension, `velocity_x`; on a table
     /// `standing_layer` and `rolling_layer`.
     pub series: Vec<(&'static str, Vec<Vec<f64>>)>,
     /// The maps by name, as in [`Finished::maps`].
@@ -40,12 +40,13 @@ fn instants(plane: &Plane, count: usize) -> Vec<usize> {
     }
 }
 
-/// The series that figures show.
+/// The series that figures show; those of a mountain show maps alone.
 fn shown(plane: &Plane) -> &'static [&'static str] {
-    match (plane.as_table(), plane.y.is_empty()) {
-        (Some(_), _) => &["standing_layer", "rolling_layer"],
-        (None, true) => &["thickness", "velocity_x"],
-        (None, false) => &["thickness"],
+    match (&plane.under, plane.y.is_empty()) {
+        (Under::Table(_), _) => &["standing_layer", "rolling_layer"],
+        (Under::Chute, true) => &["thickness", "velocity_x"],
+        (Under::Chute, false) => &["thickness"],
+        (Under::Mountain(_), _) => &[],
     }
 }
 
@@ -165,7 +166,10 @@ impl<'r> Story<'r> {
         let first = |name: &str| {
             series.iter().find(|(own, _)| *own == name).and_then(|(_, series)| series.first()).cloned()
         };
-        plane.release = Sparse::of(first("thickness").unwrap_or_default());
+        plane.release = Sparse::of(match first("thickness") {
+            None if has("thickness") => read("thickness")?.into_iter().next().unwrap_or_default(),
+            start => start.unwrap_or_default(),
+        });
         if let Under::Table(table) = &mut plane.under {
             table.inside = first("rolling_layer").unwrap_or_default().iter().map(|v| !v.is_nan()).collect();
             if !table.fits(&plane.x, &plane.y) {

@@ -1,8 +1,9 @@
 //! What a run takes of the memory, and what a step asks of it at least.
 
 use super::Simulation;
+use crate::field::bytes_per_cell;
 use crate::observe::Maps;
-use crate::scheme::{Parts, Scheme};
+use crate::scheme::Scheme;
 
 /// Bytes a cell and step that pass between memory and caches if every number is fetched and brought back once a stage.
 ///
@@ -27,19 +28,18 @@ impl Traffic {
 impl<const D: usize, S: Scheme<D, f64>> Simulation<D, S> {
     /// Bytes that a cell takes while a run computes: its state now and next, its ground, and the maps if they are kept.
     pub fn bytes_per_cell(maps: bool) -> usize {
-        let numbers = 2 * S::State::COUNT + S::Ground::COUNT;
-        numbers * size_of::<f64>() + if maps { Maps::BYTES_PER_CELL } else { 0 }
+        let fields = 2 * bytes_per_cell::<S::State>() + bytes_per_cell::<S::Ground>();
+        fields + if maps { Maps::BYTES_PER_CELL } else { 0 }
     }
     /// What a step asks of the memory where every tile is awake and no maps are kept.
     pub fn traffic(&self) -> Traffic {
-        let bytes = |numbers: usize| (numbers * size_of::<f64>()) as f64;
-        let state = bytes(S::State::COUNT);
+        let state = bytes_per_cell::<S::State>() as f64;
         let cells = |even: bool| {
             let tiles = self.tiles.iter().filter(|tile| tile.even || !even);
             let count = |[from, to]: [usize; 2]| to - from;
             tiles.map(|tile| count(tile.columns) * count(tile.rows)).sum::<usize>() as f64
         };
-        let ground = bytes(S::Ground::COUNT) * (1.0 - cells(true) / cells(false));
+        let ground = bytes_per_cell::<S::Ground>() as f64 * (1.0 - cells(true) / cells(false));
         let mut traffic = Traffic { read: 0.0, written: 0.0, allocated: 0.0 };
         for keep in self.stages {
             traffic.read += state + ground;
