@@ -9,7 +9,8 @@ use super::table_figures::{self, Ranges};
 use super::{FilesError, Finished, Under};
 use crate::output;
 use crate::output::figures::{
-    Axis, Colours, Curve, Figure, FigureError, Fill, HeatMap, Map, Overlay, Picture, Profiles, Style, short,
+    Axis, Colours, Curve, Figure, FigureError, Fill, HeatMap, Map, Outline, Overlay, Picture, Profiles,
+    Relief, Style, short,
 };
 use crate::output::whole_file;
 use rayon::prelude::*;
@@ -44,7 +45,9 @@ pub(super) fn write(run: &Finished, story: &Story) -> Result<PathBuf, FilesError
     }
     let path = run.directory.join("animation.png");
     let Some(&start) = shown.first() else { return Ok(path) };
-    let first = scene.draw(times[start], &read(start)?)?;
+    let fields = read(start)?;
+    scene.relief = scene.mountain(&fields);
+    let first = scene.draw(times[start], &fields)?;
     let mut failure = None;
     let written = whole_file(&path, |out| {
         let mut encoder = png::Encoder::new(out, first.width, first.height);
@@ -96,6 +99,8 @@ struct Scene<'a> {
     top: f64,
     /// What they tell apart on a table.
     ranges: Ranges,
+    /// The mountain under them, once the first is known.
+    relief: Option<Relief>,
 }
 
 /// Standing and rolling layer of a frame.
@@ -122,7 +127,24 @@ impl<'a> Scene<'a> {
             }
         });
         let top = if most > 0.0 { most } else { 1.0 };
-        Scene { story, ground: Ground::of(story), window, top, ranges: Ranges::default() }
+        Scene { story, ground: Ground::of(story), window, top, ranges: Ranges::default(), relief: None }
+    }
+
+    /// The thickness on a mountain, without words and relief.
+    fn map<'b>(&'b self, ground: &'b Ground, field: &'b [f64], outlines: &'b [Outline]) -> Map<'b> {
+        let overlay = Overlay {
+            values: field,
+            quantity: Axis::new("thickness h", self.story.unit("m")).over(0.0, self.top),
+            threshold: REACHED,
+            colours: Colours::Thickness,
+        };
+        Map { extent: ground.extent, bed: ground.bed, overlay: Some(overlay), outlines, ..Default::default() }
+    }
+
+    /// The mountain under the picture of a frame.
+    fn mountain(&self, fields: &[Vec<f64>]) -> Option<Relief> {
+        let ground = self.ground.as_ref()?;
+        self.map(ground, pair(fields).0, &ground.outlines(true, false)).mountain().ok()
     }
 
     fn draw(&self, time: f64, fields: &[Vec<f64>]) -> Result<Picture, FigureError> {
@@ -135,22 +157,10 @@ impl<'a> Scene<'a> {
         let (field, _) = pair(fields);
         let thickness = Axis::new("thickness h", story.unit("m")).over(0.0, self.top);
         if let Some(ground) = &self.ground {
-            let overlay = Overlay {
-                values: field,
-                quantity: thickness,
-                threshold: REACHED,
-                colours: Colours::Thickness,
-            };
-            return Map {
-                title: &story.title,
-                subtitle: &subtitle,
-                extent: ground.extent,
-                bed: ground.bed,
-                overlay: Some(overlay),
-                outlines: &ground.outlines(true, false),
-                ..Default::default()
-            }
-            .draw();
+            let outlines = ground.outlines(true, false);
+            let map = self.map(ground, field, &outlines);
+            return Map { title: &story.title, subtitle: &subtitle, relief: self.relief.as_ref(), ..map }
+                .draw();
         }
         let x = Axis::new("x", "");
         if let Some(window) = &self.window {

@@ -71,7 +71,7 @@ impl Elevations<'_> {
 
     pub fn slope(&self, column: usize, row: usize) -> f64 {
         let [across, down] = self.gradient(column, row);
-        let slope = across.hypot(down);
+        let slope = (across * across + down * down).sqrt();
         if slope.is_finite() { slope } else { 0.0 }
     }
 
@@ -90,7 +90,7 @@ impl Elevations<'_> {
         for row in (rim..self.rows.saturating_sub(rim)).step_by(6) {
             for column in (rim..self.columns.saturating_sub(rim)).step_by(6) {
                 let [across, down] = self.gradient(column, row);
-                let slope = across.hypot(down);
+                let slope = (across * across + down * down).sqrt();
                 let level = (z(column, row) / interval).round() * interval;
                 let crosses = (z(column, row) - level).abs() < 2.0 * slope;
                 let roomy = slope * 26.0 < interval; // lines at least 13 points apart

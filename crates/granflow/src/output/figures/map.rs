@@ -251,7 +251,7 @@ impl Figure for Map<'_> {
         if let Some(contours) = contours {
             let free = |column: usize, row: usize| {
                 let p = panel.area.at_pixel(column, row);
-                let beside = |q: &[f64; 2]| (p[0] - q[0]).hypot(p[1] - q[1]) < 12.0;
+                let beside = |q: &[f64; 2]| (p[0] - q[0]).powi(2) + (p[1] - q[1]).powi(2) < 12.0 * 12.0;
                 !covered(column, row) && !boxes.iter().any(|b| b.contains(p)) && !lines.iter().any(beside)
             };
             let elevations = Elevations { elevation, columns, rows };
@@ -289,6 +289,31 @@ mod tests {
         assert!(view.x[1] >= 1040.0 + 40.0 && view.x[1] - view.x[0] < 400.0);
         let nothing = Map { overlay: None, ..map };
         assert_eq!(nothing.view().x, [1000.0, 2000.0]);
+    }
+
+    #[test]
+    fn a_shared_mountain_changes_no_pixel() {
+        let extent = Extent { nx: 40, ny: 30, west: 0.0, south: 0.0, cell: 5.0 };
+        let bed: Vec<f64> =
+            (0..1200).map(|k| 3.0 * f64::from(k % 40) + (0.3 * f64::from(k / 40)).sin() * 20.0).collect();
+        let field = |lowest: usize| -> Vec<f64> {
+            (0..1200).map(|k| f64::from(u8::from((lowest..20).contains(&(k / 40))))).collect()
+        };
+        let (one, other) = (field(10), field(4));
+        let map = |values| Map {
+            extent,
+            bed: &bed,
+            overlay: Some(Overlay { values, threshold: 0.5, ..Default::default() }),
+            ..Default::default()
+        };
+        let relief = map(&one).mountain().unwrap();
+        assert!(relief.ink.iter().any(|&ink| ink > 0.0));
+        for values in [&one, &other] {
+            let shared = Map { relief: Some(&relief), ..map(values) };
+            assert!(shared.draw().unwrap() == map(values).draw().unwrap());
+        }
+        assert!(relief.shows(map(&one).view(), map(&one).mountain().unwrap().size()));
+        assert!(!relief.shows(map(&other).view(), relief.size()), "it shows another box");
     }
 
     #[test]

@@ -62,7 +62,11 @@ impl Relief {
 
     /// Is it of this box and size?
     pub(super) fn shows(&self, view: View, size: (usize, usize)) -> bool {
-        self.view == view && (self.columns, self.rows) == size
+        self.view == view && self.size() == size
+    }
+
+    pub(super) fn size(&self) -> (usize, usize) {
+        (self.columns, self.rows)
     }
 }
 
