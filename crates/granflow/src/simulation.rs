@@ -744,7 +744,7 @@ impl<const D: usize, S: Scheme<D, f64>> Simulation<D, S> {
 }
 
 impl<const D: usize, S: Scheme<D, f64>> Simulation<D, S> {
-    /// Give back what only steps need, for there will be none.
+    /// Give back what only steps need, for there will be none, or none before [`Simulation::restore`].
     pub fn close(&mut self) {
         self.next = Field::default();
     }

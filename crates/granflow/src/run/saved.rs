@@ -46,6 +46,7 @@ impl<'s, const D: usize, S: Model<D>> Run<'_, 's, D, S> {
         if !saved.exists() {
             return Err(refused(format!("there is no checkpoint {}", saved.display())));
         }
+        simulation.close();
         let mut checkpoint = Checkpoint::read(&saved, &case_hash(&work.case.text()))?;
         let (mut frames, _torn) = Frames::open(&frame_file)?;
         let mut ledger = Ledger::open(&ledger_file)?;
