@@ -186,34 +186,35 @@ impl<'a, const D: usize, L: Wide, T: Scheme<D, L>> Strip<'a, D, L, T> {
         for tally in &mut *tallies {
             tally.out = Tally::NONE.out;
         }
-        let mut from = 0;
+        // The row of tiles that is under way, and the place of its tallies.
+        let (mut level, mut from) = (tiles.clone(), 0);
         // In one dimension a row has all it needs; in two the one above comes first.
         let ahead = if D > 1 { 1 } else { 0 };
         for number in first - ahead..end + ahead {
             let j = number - ahead;
-            let level = || tiles.clone().skip(from).take(across).zip(from..);
             self.edges(columns, number, first, scratch);
             if number < first {
                 continue;
             }
             self.across(columns, number, first, scratch);
             if leak {
-                for (tile, k) in level() {
+                for (tile, k) in level.clone().take(across).zip(from..) {
                     self.book(&mut tallies[k].out, tile, columns, j, scratch, false);
                 }
             }
             self.update_row(columns, number, first, scratch, count);
             if leak {
-                for (tile, k) in level() {
+                for (tile, k) in level.clone().take(across).zip(from..) {
                     self.book(&mut tallies[k].out, tile, columns, j, scratch, true);
                 }
             }
-            if level().next().is_some_and(|(tile, _)| j + 1 == tile.rows[1] as isize) {
-                for (tile, k) in level() {
+            if level.clone().next().is_some_and(|tile| j + 1 == tile.rows[1] as isize) {
+                for (tile, k) in level.clone().take(across).zip(from..) {
                     let [start, end] = tile.columns.map(|i| i - columns[0] + 1);
                     tallies[k] = Tally { out: tallies[k].out, ..count.finish(start..end) };
                 }
-                from = (from + across).min(tallies.len() - across);
+                level.by_ref().take(across).for_each(drop);
+                from += across;
             }
         }
     }

@@ -1,6 +1,5 @@
 use super::*;
 use crate::output::frames::Field;
-use std::borrow::Cow;
 use std::fs;
 use std::path::Path;
 use std::time::Duration;
@@ -35,7 +34,8 @@ fn entry(step: u64) -> Entry {
 }
 
 fn saved<'a>(step: u64, state: &'a [f64]) -> Checkpoint<'a> {
-    let arrays = vec![("state_0".to_owned(), Cow::from(state)), ("map".to_owned(), Cow::from(&state[..5]))];
+    let numbers = Numbers::Double(state.into());
+    let arrays = vec![("state_0".to_owned(), numbers), ("map".to_owned(), Numbers::Single(&[0.1, 7.0]))];
     Checkpoint { case: "case".to_owned(), step, time: 0.5, scalars: vec![("peak".to_owned(), 0.1)], arrays }
 }
 
