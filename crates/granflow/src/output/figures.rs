@@ -39,6 +39,7 @@ mod section;
 mod surface;
 mod ticks;
 mod typeface;
+mod view;
 
 use std::io;
 use std::path::Path;
@@ -49,11 +50,12 @@ pub use convergence::{Convergence, ErrorSeries};
 pub use curves::{Curve, Fill, Profiles, Style};
 pub use heat::{Frame, HeatMap, Levels, Outline};
 pub use history::{History, HistoryPanel};
-pub use map::{Extent, Map, Overlay};
+pub use map::{Map, Overlay};
 pub use relief::Relief;
 pub use section::Section;
 pub use surface::{Paint, Surface};
 pub use ticks::{round_length, short};
+pub use view::Extent;
 
 /// Why a figure could not be drawn or written.
 #[derive(Debug, thiserror::Error)]

@@ -6,7 +6,8 @@ use super::axes::extent;
 use super::colours::{Rgb, whole};
 use super::contours::{Contours, Elevations};
 use super::lattice::{Between, Lattice};
-use super::map::{Map, View};
+use super::map::Map;
+use super::view::View;
 
 /// The mountain at every pixel of a map, without what happened on it: maps that show the same box have it in common.
 #[derive(Debug, Clone, PartialEq)]
