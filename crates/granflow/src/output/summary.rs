@@ -95,7 +95,7 @@ pub struct Summary {
     #[serde(deserialize_with = "number")]
     pub wall_seconds: f64,
     /// Part of them in steps alone: the outputs, set-up and figures are beside or around them.
-    #[serde(deserialize_with = "number")]
+    #[serde(default = "unknown", deserialize_with = "number")]
     pub stepping_seconds: f64,
     /// Cells times steps by seconds on the clock.
     #[serde(deserialize_with = "number")]
@@ -151,6 +151,11 @@ impl Summary {
 
 fn number<'de, D: Deserializer<'de>>(from: D) -> Result<f64, D::Error> {
     Ok(Option::deserialize(from)?.unwrap_or(f64::NAN))
+}
+
+/// What a summary does not say that was written before it was asked for.
+fn unknown() -> f64 {
+    f64::NAN
 }
 
 #[cfg(test)]
