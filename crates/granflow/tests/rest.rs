@@ -158,7 +158,8 @@ fn terrain_pile(order: Order, slope: [f64; 2], shape: Shape, s: f64) -> Run<2, T
 fn piles_on_terrain_planes_rest_at_the_yield_slope_and_start_beyond_it() {
     for order in ORDERS {
         for shape in SHAPES {
-            for slope in [[0.0, 0.0], [-0.3, 0.0], [0.0, 0.25], [0.3, -0.2]] {
+            for slope in [[0.0, 0.0], [-0.3_f32, 0.0], [0.0, 0.25], [0.3, -0.2]] {
+                let slope = slope.map(f64::from);
                 let name = format!("{order:?} {shape:?} on {slope:?}");
                 let cone = matches!(shape, Shape::Cone);
                 let s = if cone && slope[0] * slope[1] != 0.0 { 0.999 } else { 1.0 };

@@ -362,11 +362,17 @@ impl<F: Friction, B: Copy, const LIMITED: bool> Balanced<F, B, LIMITED> {
     where
         B: Bed<D, R>,
     {
+        let mut near = *near;
+        near.here.ground = near.here.ground.exact();
+        unroll!(axis in D => {
+            near.lo[axis].ground = near.lo[axis].ground.exact();
+            near.hi[axis].ground = near.hi[axis].ground.exact();
+        });
         let Cell { state, ground } = &near.here;
         let zero = R::zero();
         let (mut lo, mut hi, mut drop) = ([zero; D], [zero; D], [zero; D]);
         unroll!(axis in D => {
-            let Rise { whole: [a, b], weight: [c, d], .. } = self.rise(near, axis);
+            let Rise { whole: [a, b], weight: [c, d], .. } = self.rise(&near, axis);
             (lo[axis], hi[axis]) = (a, b);
             drop[axis] = (-a).min(-c).max((-b).min(-d));
         });

@@ -74,7 +74,11 @@ impl<R: Real> Density<R> {
         let per = R::select(wet, one / R::select(wet, volume, one), zero);
         each!(axis => {
             let share = q[axis] * (per * others[axis]);
-            Density { u: share * wide[axis], c: c[axis], a: (-share).max(-one).min(one) }
+            Density {
+                u: R::select(wet, share * wide[axis], zero),
+                c: c[axis],
+                a: (-share).max(-one).min(one),
+            }
         })
     }
 

@@ -24,6 +24,8 @@ pub trait Bed<const D: usize, R: Real>: Parts<R> {
     type Plane: Parts<R>;
     /// Is it more than a plane, so that [`Bed::cross`] or [`Bed::bend`] are not 0?
     const BENT: bool;
+    /// The same bed with what follows from its slope to the last place: rest is not decided in single precision.
+    fn exact(self) -> Self;
     /// See [`Bed::turn`].
     fn plane(&self) -> Self::Plane;
     /// Pressure coefficient along `axis`: P = beta h^2/2.
@@ -118,6 +120,10 @@ impl<const D: usize, R: Real> Bed<D, R> for Chute<D, R> {
     type Plane = ();
     const BENT: bool = false;
     #[inline(always)]
+    fn exact(self) -> Self {
+        self
+    }
+    #[inline(always)]
     fn plane(&self) {}
     #[inline(always)]
     fn beta(&self, _axis: usize) -> R {
@@ -193,7 +199,8 @@ impl<const D: usize, R: Real> Bed<D, R> for Chute<D, R> {
 /// horizontal velocity w and the volume per plan area H = h/c).
 ///
 /// psi = g (b + c^2 H), M = I - s s^T, s = c grad b, beta = g c^2 (1 - s_axis^2). A cell outside the data has c = 0. A grid
-/// keeps all but b and g in single precision: 6e-8 of a slope.
+/// keeps all but b and g in single precision, 6e-8 of a slope; where rest is decided c follows from the slope as it is kept
+/// ([`Bed::exact`]).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Terrain<const D: usize, R> {
     /// b \[m\].
@@ -331,6 +338,11 @@ impl<const D: usize, R: Real> Bed<D, R> for Terrain<D, R> {
     type On<L: Real> = Terrain<D, L>;
     type Plane = Tangent<D, R>;
     const BENT: bool = true;
+    #[inline(always)]
+    fn exact(self) -> Self {
+        let cos = R::of(1.0) / (R::of(1.0) + dot(self.slope, self.slope)).sqrt();
+        Terrain { cos: R::select(self.outside(), R::zero(), cos), ..self }
+    }
     #[inline(always)]
     fn plane(&self) -> Tangent<D, R> {
         Tangent { slope: self.slope, square: self.cos * self.cos }

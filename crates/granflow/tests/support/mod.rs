@@ -93,19 +93,13 @@ pub fn ground<const D: usize>(Surface { z, slope, bent }: Surface<D>) -> Terrain
     Terrain { level: z, slope, cos, curvature: bent.map(|row| row.map(|b| cos * b)), gravity: GRAVITY }
 }
 
-/// The grounds of a grid over `bed`, which answers `None` outside the data, rounded as a grid keeps them.
+/// The grounds of a grid over `bed`, which answers `None` outside the data; slopes are rounded as a grid keeps them.
 pub fn terrain<const D: usize>(
     grid: &Grid<D>,
     bed: impl Fn([f64; D]) -> Option<Surface<D>>,
 ) -> Vec<Terrain<D, f64>> {
-    let single = |value: f64| f64::from(value as f32);
-    let kept = |ground: Terrain<D, f64>| Terrain {
-        slope: ground.slope.map(single),
-        cos: single(ground.cos),
-        curvature: ground.curvature.map(|row| row.map(single)),
-        ..ground
-    };
-    let at = |centre| bed(centre).map_or(Terrain::nothing(GRAVITY), |surface| kept(ground(surface)));
+    let kept = |surface: Surface<D>| Surface { slope: surface.slope.map(|s| f64::from(s as f32)), ..surface };
+    let at = |centre| bed(centre).map_or(Terrain::nothing(GRAVITY), |surface| ground(kept(surface)));
     (0..grid.count()).map(|number| at(grid.centre(grid.index(number)))).collect()
 }
 
