@@ -38,6 +38,7 @@ impl Mountain {
         for (number, one) in case.release.iter().enumerate() {
             release = release.plus(volume(case, one, number, &terrain)?);
         }
+        trim();
         Ok(Mountain { terrain, release })
     }
 
@@ -65,6 +66,15 @@ impl Mountain {
         let ground = move |cell| ground::Terrain::at(&terrain, gravity, cell);
         let state = move |[i, j]: [usize; 2]| Flow::still(release.get(j * columns + i));
         work.visit(plane, Simulation::new(scheme, grid, stages, step_size(case), ground, state))
+    }
+}
+
+/// Hands back to the system what reading has left: the allocator would keep it for more of the same, and none will come.
+fn trim() {
+    #[cfg(all(target_os = "linux", target_env = "gnu"))]
+    // SAFETY: only memory that is free is given back.
+    unsafe {
+        libc::malloc_trim(0);
     }
 }
 
