@@ -143,6 +143,6 @@ fn a_run_on_a_mountain_takes_what_its_fields_take() {
     let (finished, bytes) = most(|| run(&case, &options, &AtomicBool::new(false), &mut |_| ()).unwrap());
     assert_eq!(finished.summary.steps, 2);
     // What the writer may have in hand.
-    let most_of_all = fields[1] as f64 + BESIDE + per_cell(64 << 20);
+    let most_of_all = fields[1] as f64 + BESIDE + per_cell(32 << 20);
     assert!(per_cell(bytes) < most_of_all, "{} bytes a cell to run {}", per_cell(bytes), fields[1]);
 }

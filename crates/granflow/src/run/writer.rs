@@ -16,9 +16,9 @@ use std::sync::mpsc::{Receiver, Sender, SyncSender, channel, sync_channel};
 use std::thread::{Builder, JoinHandle};
 use std::time::Instant;
 
-/// Numbers in a piece, and how many pieces there may be: at most 64 MiB.
+/// Numbers in a piece, and how many pieces there may be: at most 32 MiB.
 const NUMBERS: usize = 1 << 15;
-const PIECES: usize = 256;
+const PIECES: usize = 128;
 /// Numbers that are worked out before they are rounded, so that they stay in the nearest cache.
 const AT_ONCE: usize = 1 << 9;
 
