@@ -411,7 +411,7 @@ where
             let u = state.velocity();
             return each!(axis => Density::mean(u[axis]));
         }
-        Density::new(state.h.positive(), state.q, each!(axis => ground.beta(axis)))
+        each!(axis => Density::new(state.h.positive(), state.q[axis], ground.beta(axis)))
     }
 
     #[inline(always)]
@@ -511,7 +511,7 @@ where
     ) -> Flow<D, R> {
         let near = window.cross();
         let (zero, per) = (R::zero(), near.spacing.per);
-        let Cell { state, ground: bed } = near.here;
+        let (state, bed) = (near.here.state, near.here.ground.exact());
         let Flow { h, q } = state;
         let (mut gone, mut lost, mut gates) = (zero, [zero; D], zero);
         unroll!(axis in D => {

@@ -60,26 +60,17 @@ pub struct Density<R> {
 parts!([R: Real] Density<R> { u: R, c: R, a: R } masks {});
 
 impl<R: Real> Density<R> {
-    /// Of depth `h`, momentum `q` and pressure coefficient `beta` along each axis: u = q/h and a by one division for all,
-    /// 1/(h c ...), 1/h without pressure. A depth so small that h c ... is no normal number has no velocity.
+    /// Of depth `h` and momentum `q` along the axis, pressure coefficient `beta`: u = q/h and a by one division,
+    /// 1/(h c), 1/h without pressure. A depth so small that h c is no normal number has no velocity.
     #[inline(always)]
-    pub fn new<const D: usize>(h: R, q: [R; D], beta: [R; D]) -> [Self; D] {
+    pub fn new(h: R, q: R, beta: R) -> Self {
         let (zero, one) = (R::zero(), R::of(1.0));
-        let c: [R; D] = each!(axis => ((beta[axis] + beta[axis]) * h).sqrt());
-        let wide: [R; D] = each!(axis => R::select(c[axis].same(zero), one, c[axis]));
-        // The product of the others.
-        let others: [R; D] = each!(axis => if D > 1 { wide[1 - axis] } else { one });
-        let volume = h * (wide[0] * others[0]);
+        let c = ((beta + beta) * h).sqrt();
+        let wide = R::select(c.same(zero), one, c);
+        let volume = h * wide;
         let wet = R::of(f64::MIN_POSITIVE).le(volume);
-        let per = R::select(wet, one / R::select(wet, volume, one), zero);
-        each!(axis => {
-            let share = q[axis] * (per * others[axis]);
-            Density {
-                u: R::select(wet, share * wide[axis], zero),
-                c: c[axis],
-                a: (-share).max(-one).min(one),
-            }
-        })
+        let share = q * R::select(wet, one / R::select(wet, volume, one), zero);
+        Density { u: R::select(wet, share * wide, zero), c, a: (-share).max(-one).min(one) }
     }
 
     /// Of mean velocity `u`, where nothing else is asked.
@@ -127,7 +118,7 @@ mod tests {
     use super::*;
 
     fn halves(h: f64, u: f64, beta: f64) -> [Half<f64>; 2] {
-        Density::new(h, [h * u], [beta])[0].halves(h)
+        Density::new(h, h * u, beta).halves(h)
     }
 
     fn by_quadrature(h: f64, u: f64, beta: f64, right: bool) -> (f64, f64) {
@@ -187,7 +178,7 @@ mod tests {
         let mut h = 1.0;
         while h > 0.0 {
             for u in [0.0, 1.0, -3.0] {
-                let [density] = Density::new(h, [h * u], [0.4]);
+                let density = Density::new(h, h * u, 0.4);
                 assert!(
                     density.halves(h).iter().all(|half| (half.mass + half.push).is_finite()),
                     "{h:e} {u}"
@@ -197,7 +188,7 @@ mod tests {
             h *= 0.1;
         }
         // Without pressure; below 0, where the published schemes of the mean depth may come.
-        assert_eq!(Density::new(2.0, [3.0], [0.0])[0].u, 1.5);
-        assert_eq!(Density::new(-1e-3, [1e-3], [0.4])[0].u, 0.0);
+        assert_eq!(Density::new(2.0, 3.0, 0.0).u, 1.5);
+        assert_eq!(Density::new(-1e-3, 1e-3, 0.4).u, 0.0);
     }
 }

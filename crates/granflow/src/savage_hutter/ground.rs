@@ -24,7 +24,7 @@ pub trait Bed<const D: usize, R: Real>: Parts<R> {
     type Plane: Parts<R>;
     /// Is it more than a plane, so that [`Bed::cross`] or [`Bed::bend`] are not 0?
     const BENT: bool;
-    /// The same bed with what follows from its slope to the last place: rest is not decided in single precision.
+    /// The same bed with what follows from its slope as that is: forces and rest are not decided in single precision.
     fn exact(self) -> Self;
     /// See [`Bed::turn`].
     fn plane(&self) -> Self::Plane;
@@ -199,8 +199,8 @@ impl<const D: usize, R: Real> Bed<D, R> for Chute<D, R> {
 /// horizontal velocity w and the volume per plan area H = h/c).
 ///
 /// psi = g (b + c^2 H), M = I - s s^T, s = c grad b, beta = g c^2 (1 - s_axis^2). A cell outside the data has c = 0. A grid
-/// keeps all but b and g in single precision, 6e-8 of a slope; where rest is decided c follows from the slope as it is kept
-/// ([`Bed::exact`]).
+/// keeps all but b and g in single precision, 6e-8 of a slope; for the forces on a cell c follows from its slope as it is
+/// kept ([`Bed::exact`]).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Terrain<const D: usize, R> {
     /// b \[m\].
@@ -340,8 +340,9 @@ impl<const D: usize, R: Real> Bed<D, R> for Terrain<D, R> {
     const BENT: bool = true;
     #[inline(always)]
     fn exact(self) -> Self {
-        let cos = R::of(1.0) / (R::of(1.0) + dot(self.slope, self.slope)).sqrt();
-        Terrain { cos: R::select(self.outside(), R::zero(), cos), ..self }
+        // One step of Newton's: 6e-8 become 5e-15.
+        let whole = (self.cos * self.cos) * (R::of(1.0) + dot(self.slope, self.slope));
+        Terrain { cos: self.cos * (R::of(1.5) - R::of(0.5) * whole), ..self }
     }
     #[inline(always)]
     fn plane(&self) -> Tangent<D, R> {

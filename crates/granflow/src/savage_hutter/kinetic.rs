@@ -119,8 +119,8 @@ impl Kinetic {
         let (out, back) = match depth {
             FaceDepth::Own => (left.halves[axis][1], right.halves[axis][0]),
             FaceDepth::Mean => {
-                let [out] = Density::new(mean, [mean * left.u[axis]], [left.beta]);
-                let [back] = Density::new(mean, [mean * right.u[axis]], [right.beta]);
+                let out = Density::new(mean, mean * left.u[axis], left.beta);
+                let back = Density::new(mean, mean * right.u[axis], right.beta);
                 (out.halves(mean)[1], back.halves(mean)[0])
             }
         };
@@ -191,7 +191,7 @@ impl<const D: usize, R: Real> Scheme<D, R> for Kinetic {
 
     #[inline(always)]
     fn prime(&self, Cell { state, ground }: &Cell<Flow<D, R>, Chute<D, R>>) -> [Density<R>; D] {
-        Density::new(state.h, state.q, [ground.beta; D])
+        each!(axis => Density::new(state.h, state.q[axis], ground.beta))
     }
 
     #[inline(always)]
