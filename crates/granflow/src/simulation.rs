@@ -425,7 +425,7 @@ impl<const D: usize, S: Scheme<D, f64>> Simulation<D, S> {
     pub fn speed(&self) -> f64 {
         self.levels.iter().fold(0.0, |most, level| level.speed.max(most))
     }
-    /// Sums over all cells, compensated and in fixed order; cells that changed since [`Simulation::sum_up`] are looked at.
+    /// Sums over all cells, compensated and in fixed order; cells that changed since [`Simulation::take_sums`] are looked at.
     pub fn totals(&self) -> Totals {
         let sum = |(number, sums): (usize, &Totals)| {
             if self.unsummed[number] { self.totals_of(&self.tiles[number]) } else { *sums }
