@@ -1,7 +1,7 @@
 //! One fused sweep over the tiles that are awake, on any number of threads and lanes with the same result bit for bit.
 //!
-//! A tile sleeps while it and its eight neighbours rested and did not change in the last step: what it would
-//! compute is then what it already holds. Each tile is computed by one thread, reads only the old field and
+//! A tile sleeps while all cells that a step reaches it from, its own and those of its neighbours that are near it, rested
+//! and did not change in the last step: what it would compute is then what it already holds. Each tile is computed by one thread, reads only the old field and
 //! writes only its own cells; sums are taken per tile and added in the order of the tiles.
 
 mod scratch;
@@ -22,13 +22,14 @@ pub use tally::Tally;
 /// Most cells side by side that are computed in one go, with the neighbour at each end.
 pub(crate) const STRIP: usize = 128;
 
-/// Largest extent of a tile along x and y. At least 6, the reach of a two-stage step.
+/// Largest extent of a tile along x and y. Half of it is at least 6, the reach of a two-stage step: so small may tiles be that
+/// a grid is cut into.
 pub const fn tile_size(dimensions: usize) -> [usize; 2] {
-    if dimensions == 1 { [STRIP - 2, 1] } else { [(STRIP - 2) / 6, 16] }
+    if dimensions == 1 { [STRIP - 2, 1] } else { [(STRIP - 2) / 6, 12] }
 }
 
 /// Most rows of tiles that one thread computes in one go: the rows between them are then read once.
-pub const MOST_TILES: usize = 4;
+pub const MOST_TILES: usize = 6;
 
 /// A rectangle of tiles that are awake, row by row in the list of them.
 #[derive(Clone, Debug)]
@@ -129,6 +130,8 @@ pub struct Sweep<'a, const D: usize> {
     pub from: &'a Field,
     /// The ways out.
     pub leaks: &'a [Leak],
+    /// Over how many cells a step reaches.
+    pub reach: usize,
     /// Step.
     pub dt: f64,
     /// Weight of what `to` holds before (Shu-Osher).

@@ -570,6 +570,7 @@ impl<const D: usize, S: Scheme<D, f64>> Simulation<D, S> {
                 size: self.grid.size,
                 grounds: &self.grounds,
                 from: &self.now,
+                reach: GHOSTS * self.stages.len(),
                 dt,
                 keep,
                 last,
@@ -583,8 +584,8 @@ impl<const D: usize, S: Scheme<D, f64>> Simulation<D, S> {
             out = out.map(|o| o * (1.0 - keep));
             for (&number, found) in self.awake.iter().zip(&self.found) {
                 let tally = &mut self.tallies[number as usize];
-                let quiet = found.quiet && (stage == 0 || tally.quiet);
-                *tally = Tally { quiet, ..*found };
+                let stirs = if stage == 0 { found.stirs } else { found.stirs.or(tally.stirs) };
+                *tally = Tally { stirs, ..*found };
             }
             // In the order of the tiles, whatever runs they were computed in.
             for &number in &self.leaky {
@@ -610,7 +611,7 @@ impl<const D: usize, S: Scheme<D, f64>> Simulation<D, S> {
             finite &= tally.finite;
             self.levels[number as usize / self.across].stale = true;
             self.unsummed[number as usize] = true;
-            if !tally.quiet {
+            if tally.stirs.anywhere {
                 self.restless.push(number);
             }
         }
@@ -676,7 +677,7 @@ impl<const D: usize, S: Scheme<D, f64>> Simulation<D, S> {
         }
     }
 
-    /// Find the tiles that something can happen in, in order: the restless ones and those around them. They are marked in
+    /// Find the tiles that something can happen in, in order: the restless ones and those that a step reaches from them. They are marked in
     /// `waiting`.
     fn find_stirring(&mut self) {
         let (across, up) = (self.across, self.tiles.len() / self.across);
@@ -688,9 +689,13 @@ impl<const D: usize, S: Scheme<D, f64>> Simulation<D, S> {
         };
         for &number in &self.restless {
             let (x, y) = (number as usize % across, number as usize / across);
+            mark(number as usize);
             for v in y.saturating_sub(1)..(y + 2).min(up) {
                 for u in x.saturating_sub(1)..(x + 2).min(across) {
-                    mark(v * across + u);
+                    let away = [u as isize - x as isize, v as isize - y as isize];
+                    if self.tallies[number as usize].stirs.reaches(away) {
+                        mark(v * across + u);
+                    }
                 }
             }
         }

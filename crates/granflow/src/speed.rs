@@ -148,7 +148,7 @@ mod tests {
         let before = load.run.updates();
         load.step().unwrap();
         let share = (load.run.updates() - before) as f64 / 160_000.0;
-        // Of the square, and of the tiles around it, 20 x 16 cells each.
+        // Of the square, and of the tiles around it, 20 x 12 cells each.
         assert!((0.25..0.45).contains(&share), "{share}");
     }
 

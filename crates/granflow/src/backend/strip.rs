@@ -22,6 +22,7 @@ pub(super) struct Strip<'a, const D: usize, L: Wide, T: Scheme<D, L>> {
     maps: Option<&'a [Sheet<'a, f32>; 4]>,
     leaks: &'a [Leak],
     spacing: Spacing<D, L>,
+    reach: usize,
     dt: L,
     keep: f64,
     last: bool,
@@ -125,6 +126,7 @@ impl<'a, const D: usize, L: Wide, T: Scheme<D, L>> Strip<'a, D, L, T> {
             maps,
             leaks: sweep.leaks,
             spacing: Spacing::new(sweep.size),
+            reach: sweep.reach,
             dt: L::of(sweep.dt),
             keep: sweep.keep,
             last: sweep.last,
@@ -208,10 +210,13 @@ impl<'a, const D: usize, L: Wide, T: Scheme<D, L>> Strip<'a, D, L, T> {
                     self.book(&mut tallies[k].out, tile, columns, j, scratch, true);
                 }
             }
-            if level.clone().next().is_some_and(|tile| j + 1 == tile.rows[1] as isize) {
+            let Some(&Tile { rows: [bottom, top], .. }) = level.clone().next() else { continue };
+            count.pass((j + 1 - bottom as isize).max(0) as usize, top - bottom, self.reach);
+            if j + 1 == top as isize {
                 for (tile, k) in level.clone().take(across).zip(from..) {
                     let [start, end] = tile.columns.map(|i| i - columns[0] + 1);
-                    tallies[k] = Tally { out: tallies[k].out, ..count.finish(start..end) };
+                    let found = count.finish(start..end, top - bottom, self.reach);
+                    tallies[k] = Tally { out: tallies[k].out, ..found };
                 }
                 level.by_ref().take(across).for_each(drop);
                 from += across;

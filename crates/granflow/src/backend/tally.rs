@@ -15,8 +15,8 @@ pub struct Tally {
     pub out: [f64; EXITS.len()],
     /// Largest change of each part of the state in the step.
     pub change: [f64; MOST_PARTS],
-    /// Every cell rested and none changed.
-    pub quiet: bool,
+    /// Where a cell changed, or may yet.
+    pub stirs: Stirs,
     /// Every number is finite.
     pub finite: bool,
 }
@@ -28,9 +28,34 @@ impl Tally {
         speed: 0.0,
         out: [0.0; EXITS.len()],
         change: [0.0; MOST_PARTS],
-        quiet: true,
+        stirs: Stirs { anywhere: false, near: [[false; 2]; 2] },
         finite: true,
     };
+}
+
+/// Where in a tile something stirs.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Stirs {
+    /// In any of its cells.
+    pub anywhere: bool,
+    /// In those from which a step reaches beyond its lower and its upper end along x, and along y.
+    pub near: [[bool; 2]; 2],
+}
+
+impl Stirs {
+    /// Here or there.
+    pub fn or(self, other: Stirs) -> Stirs {
+        let near = |axis: usize, side: usize| self.near[axis][side] | other.near[axis][side];
+        Stirs {
+            anywhere: self.anywhere | other.anywhere,
+            near: [[near(0, 0), near(0, 1)], [near(1, 0), near(1, 1)]],
+        }
+    }
+    /// Does a step reach the tile that lies `dx` and `dy` tiles away?
+    pub fn reaches(&self, [dx, dy]: [isize; 2]) -> bool {
+        let along = |axis: usize, d: isize| d == 0 || self.near[axis][usize::from(d > 0)];
+        self.anywhere && along(0, dx) && along(1, dy)
+    }
 }
 
 /// One quantity in each column of a strip.
@@ -59,8 +84,10 @@ pub(super) struct Count {
     rate: Columns,
     square: Columns,
     change: [Columns; MOST_PARTS],
-    /// Columns in which a cell changed or may yet, a bit each.
+    /// Columns in which a cell changed or may yet, a bit each: in the rows that are under way, in those before, in the lowest.
     stirs: u128,
+    before: u128,
+    low: u128,
     infinite: u128,
 }
 
@@ -68,7 +95,15 @@ impl Count {
     pub(super) const fn new() -> Self {
         const { assert!(STRIP <= 128) };
         let none = Columns::NONE;
-        Count { rate: none, square: none, change: [none; MOST_PARTS], stirs: 0, infinite: 0 }
+        Count {
+            rate: none,
+            square: none,
+            change: [none; MOST_PARTS],
+            stirs: 0,
+            before: 0,
+            low: 0,
+            infinite: 0,
+        }
     }
 
     /// Take the cells of `live` into account, the first of which lies in `column`: their rates and squared speeds.
@@ -101,8 +136,20 @@ impl Count {
         self.infinite |= u128::from(L::bits(mask)) << column;
     }
 
-    /// The tally of the tile in some columns, without what left it; they are empty afterwards.
-    pub(super) fn finish(&mut self, columns: Range<usize>) -> Tally {
+    /// So many of `rows` rows of the tiles are done; a step reaches over `reach` cells.
+    #[inline(always)]
+    pub(super) fn pass(&mut self, done: usize, rows: usize, reach: usize) {
+        if done == reach.min(rows) {
+            self.low = self.before | self.stirs;
+        }
+        if done + reach == rows {
+            self.before |= self.stirs;
+            self.stirs = 0;
+        }
+    }
+
+    /// The tally of the tile in some columns, of so many rows, without what left it; they are empty afterwards.
+    pub(super) fn finish(&mut self, columns: Range<usize>, rows: usize, reach: usize) -> Tally {
         // None is less than 0 or no number.
         let most = |quantity: &Columns| {
             quantity.0[columns.clone()]
@@ -116,12 +163,23 @@ impl Count {
             ..Tally::NONE
         };
         let bits = ((1_u128 << columns.len()) - 1) << columns.start;
-        (tally.quiet, tally.finite) = (self.stirs & bits == 0, self.infinite & bits == 0);
+        let all = (self.before | self.stirs) & bits;
+        let high = if rows > reach { self.stirs & bits } else { all };
+        let some = |bits: u128| bits != 0;
+        let end = (1_u128 << reach.min(columns.len())) - 1;
+        let ends = [end << columns.start, end << (columns.end - reach.min(columns.len()))];
+        tally.stirs = Stirs {
+            anywhere: some(all),
+            near: [ends.map(|end| some(all & end)), [some(self.low & bits), some(high)]],
+        };
+        tally.finite = self.infinite & bits == 0;
         let Count { rate, square, change: [a, b, c], .. } = self;
         for quantity in [rate, square, a, b, c] {
             quantity.0[columns.clone()].fill(0.0);
         }
-        (self.stirs, self.infinite) = (self.stirs & !bits, self.infinite & !bits);
+        for kept in [&mut self.stirs, &mut self.before, &mut self.low, &mut self.infinite] {
+            *kept &= !bits;
+        }
         tally
     }
 }
