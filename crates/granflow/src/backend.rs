@@ -153,6 +153,7 @@ impl<const D: usize> Sweep<'_, D> {
         maps: Option<&mut Maps>,
         tallies: &mut [Tally],
     ) {
+        assert!(to.holds::<S::State>(&self.layout) && self.from.holds::<S::State>(&self.layout));
         let mut parts = to.parts.iter_mut();
         let to = std::array::from_fn(|_| parts.next().map(|values| Sheet::new(values)));
         let maps = maps.map(|maps| maps.sheets());

@@ -41,7 +41,8 @@ impl Field {
     pub(crate) fn of(parts: Vec<Vec<f64>>) -> Field {
         Field { singles: vec![Vec::new(); parts.len()], parts }
     }
-    /// The value of every cell, without the ghosts, by its column and row.
+    /// The value of every cell, without the ghosts, by its column and row; parts that are the same in all cells are those of the
+    /// first.
     pub(crate) fn fill<P: Parts<f64>>(&mut self, layout: &Layout, value: impl Fn(usize, usize) -> P + Sync) {
         if P::SHARED != 0 {
             value(0, 0).scatter(|k, part| {
@@ -68,6 +69,12 @@ impl Field {
             }
         });
     }
+    /// Is it one for values of type `P` in double precision, of every place?
+    pub(crate) fn holds<P: Parts<f64>>(&self, layout: &Layout) -> bool {
+        P::SINGLE | P::SHARED == 0
+            && self.parts.len() == P::COUNT
+            && self.parts.iter().all(|part| part.len() == layout.len())
+    }
     /// The value at `place`.
     #[inline(always)]
     pub fn get<P: Parts<f64>>(&self, place: usize) -> P {
@@ -86,7 +93,8 @@ impl Field {
     pub fn row<P: Parts<f64>>(&self, start: usize, len: usize) -> Row<'_, P> {
         for k in 0..P::COUNT {
             let there = if has(P::SINGLE, k) { self.singles[k].len() } else { self.parts[k].len() };
-            assert!(has(P::SHARED, k) || start + len <= there, "cells beyond their field");
+            let wanted = if has(P::SHARED, k) { 1 } else { start + len };
+            assert!(wanted <= there, "cells beyond their field");
         }
         Row { starts: self.starts::<P>(), start, len, owner: PhantomData }
     }

@@ -87,7 +87,7 @@ impl Error {
 fn cure(error: &io::Error) -> &'static str {
     match error.kind() {
         io::ErrorKind::StorageFull | io::ErrorKind::QuotaExceeded => {
-            "; what was complete before is still there: make room, then continue with --resume"
+            "; what was complete before is still there: make room, then continue with --resume (from the last checkpoint; before the first, start again)"
         }
         io::ErrorKind::PermissionDenied | io::ErrorKind::ReadOnlyFilesystem => {
             "; choose a folder you may write to with --out"
@@ -187,6 +187,17 @@ pub fn remove_leftovers(folder: &Path) -> Result<usize, Error> {
     Ok(removed)
 }
 
+/// Removes a file; that there is none is no error.
+///
+/// # Errors
+/// [`Error::Io`] naming it.
+pub(crate) fn remove_if_there(path: &Path) -> Result<(), Error> {
+    match fs::remove_file(path) {
+        Err(absent) if absent.kind() == io::ErrorKind::NotFound => Ok(()),
+        done => done.map_err(Error::io(path, "remove")),
+    }
+}
+
 /// How many bits a number of a result file keeps.
 #[derive(
     Debug, Clone, Copy, PartialEq, Eq, Default, serde::Serialize, serde::Deserialize, schemars::JsonSchema,
@@ -195,7 +206,7 @@ pub fn remove_leftovers(folder: &Path) -> Result<usize, Error> {
 pub enum Precision {
     /// 32 bits, about 7 digits.
     F32,
-    /// 64 bits, every bit of the computation.
+    /// 64 bits, every bit of the computation (maps of peaks and times are kept in 32).
     #[default]
     F64,
 }

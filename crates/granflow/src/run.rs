@@ -169,6 +169,8 @@ struct Run<'a, 's, const D: usize, S: Scheme<D, f64>> {
     next_line: f64,
     /// Time on the clock spent in steps.
     stepping: Duration,
+    /// Updates of a cell before this process.
+    updates: u64,
     /// When the last checkpoint was saved, and when the series were last joined and what it cost \[s\]; `None` while they are
     /// being joined.
     saved: Instant,
@@ -240,6 +242,7 @@ impl<const D: usize, S: Model<D>> Run<'_, '_, D, S> {
         let max_speed = self.simulation.speed();
         self.peak_speed = self.peak_speed.max(max_speed);
         if self.work.case.time.stop.is_some() {
+            self.simulation.take_sums();
             self.energy = self.simulation.totals().energy;
             self.peak_energy = self.peak_energy.max(self.energy);
         }

@@ -640,6 +640,11 @@ impl<const D: usize, S: Scheme<D, f64>> Simulation<D, S> {
         self.restless.extend(0..self.tiles.len() as u32);
     }
 
+    /// Let no tile be computed any more: the state was found to be at rest before it was saved.
+    pub(crate) fn sleep_all(&mut self) {
+        self.restless.clear();
+    }
+
     /// Number the tiles that something can happen in, in rectangles: what is next to each other in memory is computed by one
     /// thread, as long as there is enough for all of them. Costs nothing for tiles that sleep.
     fn wake(&mut self) {
@@ -750,7 +755,7 @@ impl<const D: usize, S: Scheme<D, f64>> Simulation<D, S> {
 
 impl<const D: usize, S: Scheme<D, f64>> Simulation<D, S> {
     /// Give back what only steps need, for there will be none, or none before [`Simulation::restore`].
-    pub fn close(&mut self) {
+    pub(crate) fn close(&mut self) {
         self.next = Field::default();
     }
     /// The summary maps by name, x fastest, each copied when all else and those before it are given back.

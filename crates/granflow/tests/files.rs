@@ -236,3 +236,25 @@ fn a_missing_and_a_foreign_result_are_named() {
     let foreign = Story::read(&path).unwrap_err();
     assert!(matches!(foreign, FilesError::Foreign { .. }) && foreign.to_string().contains("result.nc"));
 }
+
+/// What rests needs no further step; what is begun anew does not go on from an older run.
+#[test]
+fn a_run_that_rests_is_resumed_as_it_is_and_an_older_checkpoint_is_none() {
+    let folder = tempfile::tempdir().unwrap();
+    let case = slope(folder.path(), r#"["netcdf"]"#);
+    let out = folder.path().join("out");
+    let first = begin(&case, &out, false, &mut |_| false).unwrap().summary;
+    assert_eq!(first.stop_reason, StopReason::AtRest);
+    let ledger = fs::read(out.join("mass.csv")).unwrap();
+    let again = begin(&case, &out, true, &mut |_| false).unwrap().summary;
+    assert_eq!((again.stop_reason, again.steps, again.time), (first.stop_reason, first.steps, first.time));
+    assert!(fs::read(out.join("mass.csv")).unwrap() == ledger);
+
+    let mut seen = false;
+    begin(&case, &out, false, &mut |_| {
+        seen = out.join("checkpoint/state.bin").exists();
+        true
+    })
+    .unwrap();
+    assert!(!seen, "the checkpoint of the run before");
+}

@@ -91,7 +91,7 @@ impl<const D: usize, S: Model<D>> Run<'_, '_, D, S> {
             reach_angle: None,
             wall_seconds: wall,
             stepping_seconds: self.stepping.as_secs_f64(),
-            cell_updates_per_second: simulation.updates() as f64 / wall,
+            cell_updates_per_second: (simulation.updates() - self.updates) as f64 / wall,
             threads: rayon::current_num_threads() as u64,
             version: env!("CARGO_PKG_VERSION").to_owned(),
             extra: serde_json::Map::new(),

@@ -29,8 +29,12 @@ impl<'s, const D: usize, S: Model<D>> Run<'_, 's, D, S> {
         let directory = &work.options.directory;
         let (frame_file, ledger_file) = (frames_in(directory), directory.join("mass.csv"));
         let initial = simulation.totals().volume;
+        for folder in [directory.clone(), directory.join("checkpoint")] {
+            output::remove_leftovers(&folder)?;
+        }
         if !work.options.resume {
-            output::remove_leftovers(directory)?;
+            // An older one would belong to other frames.
+            output::remove_if_there(&checkpoint_in(directory))?;
             let frames = Frames::create(&frame_file, work.case.precision(), plane.series())?;
             let ledger = Ledger::create(&ledger_file, plane.exits())?;
             let mut run = Run::new(work, simulation, plane, sand, frames, ledger)?;
@@ -75,6 +79,7 @@ impl<'s, const D: usize, S: Model<D>> Run<'_, 's, D, S> {
         ledger: Ledger,
     ) -> Result<Run<'a, 's, D, S>, RunError> {
         let (now, energy) = (Instant::now(), simulation.totals().energy);
+        let updates = simulation.updates();
         let line = ledger.entries().last();
         let written = [frames.times().last().copied(), line.map(|entry| entry.time)];
         let wet_cells = line.map_or(0, |entry| entry.wet_cells as usize);
@@ -97,6 +102,7 @@ impl<'s, const D: usize, S: Model<D>> Run<'_, 's, D, S> {
             next_frame: f64::INFINITY,
             next_line: f64::INFINITY,
             stepping: Duration::ZERO,
+            updates,
             saved: now,
             joined: Some((now, 0.0)),
         })
@@ -114,6 +120,7 @@ impl<'s, const D: usize, S: Model<D>> Run<'_, 's, D, S> {
             ("next_line".into(), self.next_line),
             ("last_frame".into(), due[0]),
             ("last_line".into(), due[1]),
+            ("at_rest".into(), f64::from(u8::from(simulation.at_rest()))),
         ];
         scalars.extend(simulation.clock().iter().enumerate().map(|(k, v)| (format!("clock_{k}"), *v)));
         let state = simulation.arrays().parts.iter().enumerate();
@@ -152,6 +159,9 @@ fn restore<const D: usize, S: Scheme<D, f64>>(
     let parts: Vec<Vec<f64>> = (0..simulation.arrays().parts.len()).map_while(part).collect();
     if !simulation.restore(&clock, Field::of(parts)) {
         return Some("its state has another shape".to_owned());
+    }
+    if saved.scalar("at_rest") == Some(1.0) {
+        simulation.sleep_all();
     }
     if let Some(maps) = &mut simulation.maps {
         for (name, map) in maps.named_mut() {

@@ -24,7 +24,7 @@ pub trait Bed<const D: usize, R: Real>: Parts<R> {
     type Plane: Parts<R>;
     /// Is it more than a plane, so that [`Bed::cross`] or [`Bed::bend`] are not 0?
     const BENT: bool;
-    /// The same bed with what follows from its slope as that is: forces and rest are not decided in single precision.
+    /// The same bed with what follows from its slope as that is: rest is not decided in single precision.
     fn exact(self) -> Self;
     /// See [`Bed::turn`].
     fn plane(&self) -> Self::Plane;
@@ -199,8 +199,9 @@ impl<const D: usize, R: Real> Bed<D, R> for Chute<D, R> {
 /// horizontal velocity w and the volume per plan area H = h/c).
 ///
 /// psi = g (b + c^2 H), M = I - s s^T, s = c grad b, beta = g c^2 (1 - s_axis^2). A cell outside the data has c = 0. A grid
-/// keeps all but b and g in single precision, 6e-8 of a slope; for the forces on a cell c follows from its slope as it is
-/// kept ([`Bed::exact`]).
+/// keeps all but b and g in single precision, 6e-8 of a slope; for the metric, the friction and the weight of a cell, and
+/// wherever rest is decided, c follows from its slope as it is kept ([`Bed::exact`]); differences between cells and the turn
+/// of a velocity into the next plane are right to 1e-7.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Terrain<const D: usize, R> {
     /// b \[m\].
