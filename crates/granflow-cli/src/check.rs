@@ -2,10 +2,10 @@
 
 use granflow::case::{Axis, Case, Frames, Grid, Model, SchemeName, Side, Slope, Stepping, Until};
 use granflow::hadeler_kuttler::scheme::HadelerKuttler;
+use granflow::kernels::Kernel;
 use granflow::results::Plane;
 use granflow::savage_hutter::Flow;
 use granflow::savage_hutter::ground::Bed;
-use granflow::scheme::Scheme;
 use granflow::setup::{Sand, Scene, Visit};
 use granflow::simulation::Simulation;
 use granflow::terrain::Terrain;
@@ -32,7 +32,7 @@ struct Start {
 }
 
 impl Start {
-    fn of<const D: usize, S: Scheme<D, f64>>(simulation: &mut Simulation<D, S>, maps: bool) -> Start {
+    fn of<const D: usize, S: Kernel<D>>(simulation: &mut Simulation<D, S>, maps: bool) -> Start {
         let totals = simulation.totals();
         Start {
             rate: simulation.rate(),
@@ -51,7 +51,7 @@ impl Visit for Look {
     type Output = Start;
     fn visit<const D: usize, S>(self, _plane: Plane, mut simulation: Simulation<D, S>) -> Start
     where
-        S: Scheme<D, f64, State = Flow<D, f64>>,
+        S: Kernel<D, State = Flow<D, f64>>,
         S::Ground: Bed<D, f64>,
     {
         Start::of(&mut simulation, true)

@@ -16,7 +16,7 @@ use crate::scheme::{Scheme, Work};
 use rayon::prelude::*;
 use std::marker::PhantomData;
 use std::ops::Range;
-use strip::{Desk, Strip};
+use strip::Desk;
 pub use tally::Tally;
 
 /// Most cells side by side that are computed in one go, with the neighbour at each end.
@@ -118,12 +118,21 @@ impl Sheet<'_, f32> {
 /// Most numbers a state has (h and two momenta).
 pub const MOST_PARTS: usize = 3;
 
-/// Everything a tile needs to compute one stage.
-pub struct Sweep<'a, const D: usize> {
+/// Everything it takes to compute one stage.
+#[derive(Clone, Copy)]
+pub struct Sweep<'a> {
+    /// What it is computed with.
+    pub instructions: Instructions,
+    /// All tiles of the grid.
+    pub tiles: &'a [Tile],
+    /// The numbers of those that are awake.
+    pub awake: &'a [u32],
+    /// Those in runs.
+    pub runs: &'a [Run],
     /// Memory layout.
     pub layout: Layout,
-    /// Cell sizes.
-    pub size: [f64; D],
+    /// Cell sizes along the first axis and the last.
+    pub size: [f64; 2],
     /// Static data.
     pub grounds: &'a Field,
     /// The state that the forward-Euler map is applied to.
@@ -142,13 +151,11 @@ pub struct Sweep<'a, const D: usize> {
     pub time: f64,
 }
 
-impl<const D: usize> Sweep<'_, D> {
-    /// Compute the tiles numbered in `awake`, in runs, write `to` (and `maps` in the last stage), leave a tally each.
-    pub fn run<S: Scheme<D, f64>>(
+impl Sweep<'_> {
+    /// Compute the tiles that are awake, write `to` (and `maps` in the last stage), leave a tally each.
+    pub fn run<const D: usize, S: Scheme<D, f64>>(
         &self,
         scheme: &S,
-        instructions: Instructions,
-        (tiles, awake, runs): (&[Tile], &[u32], &[Run]),
         to: &mut Field,
         maps: Option<&mut Maps>,
         tallies: &mut [Tally],
@@ -157,18 +164,15 @@ impl<const D: usize> Sweep<'_, D> {
         let mut parts = to.parts.iter_mut();
         let to = std::array::from_fn(|_| parts.next().map(|values| Sheet::new(values)));
         let maps = maps.map(|maps| maps.sheets());
-        let tallies = Sheet::new(&mut tallies[..awake.len()]);
-        instructions.run(Tiles { sweep: self, scheme, tiles, awake, runs, to, maps, tallies });
+        let tallies = Sheet::new(&mut tallies[..self.awake.len()]);
+        self.instructions.run(Tiles::<D, S> { sweep: self, scheme, to, maps, tallies });
     }
 }
 
 /// The tiles of a sweep, with the scheme for one cell at a time.
 struct Tiles<'a, const D: usize, S> {
-    sweep: &'a Sweep<'a, D>,
+    sweep: &'a Sweep<'a>,
     scheme: &'a S,
-    tiles: &'a [Tile],
-    awake: &'a [u32],
-    runs: &'a [Run],
     to: [Option<Sheet<'a>>; MOST_PARTS],
     maps: Option<[Sheet<'a, f32>; 4]>,
     tallies: Sheet<'a, Tally>,
@@ -190,9 +194,10 @@ struct OnLanes<T, I> {
 impl<const D: usize, L: Wide, S: Scheme<D, f64>, I: Inside> Work<D, L> for OnLanes<Tiles<'_, D, S>, I> {
     type Output = ();
     fn with<T: Scheme<D, L>>(self, scheme: &T) {
-        let OnLanes { tiles: Tiles { sweep, tiles, awake, runs, to, maps, tallies, .. }, inside } = self;
-        let chunk = runs.len().div_ceil(16 * rayon::current_num_threads()).max(1);
-        runs.par_chunks(chunk).for_each(|runs| {
+        let OnLanes { tiles: Tiles { sweep, to, maps, tallies, .. }, inside } = self;
+        let Sweep { tiles, awake, runs, .. } = *sweep;
+        let chunk = runs.len().div_ceil(32 * rayon::current_num_threads()).max(1);
+        runs.par_chunks(chunk).with_max_len(1).for_each(|runs| {
             inside.call(
                 #[inline(always)]
                 || {
@@ -202,7 +207,7 @@ impl<const D: usize, L: Wide, S: Scheme<D, f64>, I: Inside> Work<D, L> for OnLan
                         // SAFETY: every tile belongs to one run.
                         let tallies = unsafe { tallies.slice(range.clone()) };
                         let to = (&to, maps.as_ref());
-                        Strip::<D, L, T>::run::<S>(sweep, scheme, tiles, *across, to, tallies, &mut desk);
+                        strip::run::<D, L, T, S>(sweep, scheme, tiles, *across, to, tallies, &mut desk);
                     }
                 },
             );

@@ -17,13 +17,13 @@
 //! # A column of sand collapses and comes to rest
 //!
 //! ```
-//! use granflow::savage_hutter::{Flow, balanced::Balanced, friction::Coulomb, ground::Chute};
+//! use granflow::savage_hutter::{Flow, balanced::Balanced, friction::Coulomb, friction::Law, ground::Chute};
 //! use granflow::{grid::Grid, scheme::Boundary, simulation::{Simulation, StepSize}, time::SSP_RK2};
 //!
 //! let grid = Grid { cells: [240], origin: [-6.0], size: [0.05], boundary: [[Boundary::Open; 2]] };
 //! let flat = Chute { tilt: [0.0], beta: 0.4, cos: 1.0, curvature: 0.0 };
 //! let column = |i| Flow::still(if grid.centre(i)[0].abs() < 1.0 { 1.0 } else { 0.0 });
-//! let (scheme, step) = (Balanced::second(Coulomb { mu: 0.32 }, 1e-6), StepSize::Courant(0.45));
+//! let (scheme, step) = (Balanced::second(Law::Coulomb(Coulomb { mu: 0.32 }), 1e-6), StepSize::Courant(0.45));
 //! let mut run = Simulation::new(scheme, grid, SSP_RK2, step, |_| flat, column);
 //! let before = run.totals().volume;
 //! while !run.at_rest() {
@@ -59,6 +59,7 @@ pub mod case;
 mod field;
 pub mod grid;
 pub mod hadeler_kuttler;
+pub mod kernels;
 mod lanes;
 pub mod limiter;
 mod observe;

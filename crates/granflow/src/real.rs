@@ -136,23 +136,16 @@ pub trait Real:
         [Self::select(steep, far, (s * z).mul_add(p, s)), Self::select(steep, (one - square).sqrt(), near)]
     }
 
-    /// p_0 z^11 + p_1 z^10 + ... + p_11, in pairs of pairs (Estrin): a third of the way from the first to the last
-    /// operation.
+    /// p_0 z^11 + p_1 z^10 + ... + p_11: the odd and the even powers side by side, each by Horner's rule.
     #[inline(always)]
     fn polynomial(p: [f64; 12], z: Self) -> Self {
-        let z2 = z * z;
-        let z4 = z2 * z2;
-        let pair: [Self; 6] = [
-            Self::of(p[0]).mul_add(z, Self::of(p[1])),
-            Self::of(p[2]).mul_add(z, Self::of(p[3])),
-            Self::of(p[4]).mul_add(z, Self::of(p[5])),
-            Self::of(p[6]).mul_add(z, Self::of(p[7])),
-            Self::of(p[8]).mul_add(z, Self::of(p[9])),
-            Self::of(p[10]).mul_add(z, Self::of(p[11])),
-        ];
-        let [high, middle, low] =
-            [pair[0].mul_add(z2, pair[1]), pair[2].mul_add(z2, pair[3]), pair[4].mul_add(z2, pair[5])];
-        high.mul_add(z4, middle).mul_add(z4, low)
+        let square = z * z;
+        let (mut odd, mut even) = (Self::of(p[0]), Self::of(p[1]));
+        for k in 1..6 {
+            odd = odd.mul_add(square, Self::of(p[2 * k]));
+            even = even.mul_add(square, Self::of(p[2 * k + 1]));
+        }
+        odd.mul_add(z, even)
     }
 }
 
@@ -256,6 +249,18 @@ pub fn dot<const D: usize, R: Real>(a: [R; D], b: [R; D]) -> R {
     unroll!(axis in D => {
         if axis > 0 {
             sum = sum + a[axis] * b[axis];
+        }
+    });
+    sum
+}
+
+/// The sum of a few numbers, from the first on.
+#[inline(always)]
+pub fn total<const D: usize, R: Real>(values: [R; D]) -> R {
+    let mut sum = values[0];
+    unroll!(axis in D => {
+        if axis > 0 {
+            sum = sum + values[axis];
         }
     });
     sum

@@ -8,12 +8,12 @@ mod writer;
 
 use crate::case::{self, Case};
 use crate::hadeler_kuttler::scheme::HadelerKuttler;
+use crate::kernels::Kernel;
 use crate::output;
 use crate::output::summary::StopReason;
 use crate::results::{FilesError, Finished, Plane};
 use crate::savage_hutter::Flow;
 use crate::savage_hutter::ground::Bed;
-use crate::scheme::Scheme;
 use crate::setup::{Sand, Scene, SetupError, Visit};
 use crate::simulation::{Failure, Simulation};
 use model::Model;
@@ -129,7 +129,7 @@ impl Visit for Work<'_> {
 
     fn visit<const D: usize, S>(self, plane: Plane, simulation: Simulation<D, S>) -> Self::Output
     where
-        S: Scheme<D, f64, State = Flow<D, f64>>,
+        S: Kernel<D, State = Flow<D, f64>>,
         S::Ground: Bed<D, f64>,
     {
         Run::start(self, simulation, plane, None)?.go()
@@ -145,7 +145,7 @@ impl Visit for Work<'_> {
 }
 
 /// A run under way.
-struct Run<'a, 's, const D: usize, S: Scheme<D, f64>> {
+struct Run<'a, 's, const D: usize, S: Kernel<D>> {
     work: Work<'a>,
     simulation: Simulation<D, S>,
     plane: Plane,

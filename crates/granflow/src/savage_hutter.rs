@@ -11,7 +11,7 @@ pub mod friction;
 pub mod ground;
 pub mod kinetic;
 
-use crate::real::{Real, unroll};
+use crate::real::{Real, each, total, unroll};
 use crate::scheme::{Parts, Watch};
 use ground::Bed;
 
@@ -37,16 +37,13 @@ impl<const D: usize, R: Real> Flow<D, R> {
         Flow { h, q: [R::zero(); D] }
     }
 
-    /// u = q/h, and 0 where h = 0.
+    /// u = q/h, and 0 where h is none.
     #[inline(always)]
     pub fn velocity(&self) -> [R; D] {
-        let dry = self.h.le(R::zero());
-        let per = R::of(1.0) / R::select(dry, R::of(1.0), self.h);
-        let mut u = self.q;
-        unroll!(k in D => {
-            u[k] = R::select(dry, R::zero(), u[k] * per);
-        });
-        u
+        let (zero, one) = (R::zero(), R::of(1.0));
+        let wet = R::of(f64::MIN_POSITIVE).le(self.h);
+        let per = R::select(wet, one / R::select(wet, self.h, one), zero);
+        each!(k => self.q[k] * per)
     }
 
     /// q = 0 in every component.
@@ -69,23 +66,21 @@ impl<const D: usize, R: Real> Flow<D, R> {
     #[inline(always)]
     pub fn rate<B: Bed<D, R>>(&self, bed: &B, per: [R; D]) -> R {
         let u = self.velocity();
-        let mut sum = R::zero();
-        unroll!(axis in D => {
+        let along: [R; D] = each!(axis => {
             let beta = bed.beta(axis);
-            sum = sum + (u[axis].abs() + ((beta + beta) * self.h.positive()).sqrt()) * per[axis];
+            (u[axis].abs() + ((beta + beta) * self.h.positive()).sqrt()) * per[axis]
         });
-        sum
+        total(along)
     }
 
     /// Volume, speed, energy of this state on `bed`; a film is thinner than `film`.
     #[inline(always)]
     pub fn watch<B: Bed<D, R>>(&self, bed: &B, film: R) -> Watch<R> {
         let square = bed.square(self.velocity());
-        let moves = R::select(self.is_still(), R::zero(), square);
         Watch {
             volume: self.h,
-            square: moves,
-            energy: self.h * moves * R::of(0.5),
+            square,
+            energy: self.h * square * R::of(0.5),
             thickness: bed.thickness(self.h),
             film: R::select(self.h.lt(film), R::of(1.0), R::zero()),
         }

@@ -215,7 +215,7 @@ pub trait Scheme<const D: usize, R: Real>: Copy + Send + Sync {
     /// The static data of a cell.
     type Ground: Parts<R>;
     /// What follows from a cell alone.
-    type Prime: Parts<R>;
+    type Prime: Copy;
     /// What a cell offers to its faces and remembers for its update.
     type Edges: Parts<R>;
     /// What passes a face, seen from both sides.
@@ -257,7 +257,8 @@ pub trait Scheme<const D: usize, R: Real>: Copy + Send + Sync {
     fn mirror(&self, axis: usize, state: &Self::State) -> Self::State;
     /// The mirror image of a ground across a wall normal to `axis`.
     fn mirror_ground(&self, axis: usize, ground: &Self::Ground) -> Self::Ground;
-    /// sum over axes of (fastest signal)/dx: the Courant condition is dt times this <= courant. \[1/time\]
+    /// sum over axes of (fastest signal)/dx: the Courant condition is dt times this <= courant; finite in every finite state, for
+    /// a run ends where it is not. \[1/time\]
     fn rate(&self, here: &Cell<Self::State, Self::Ground>, spacing: &Spacing<D, R>) -> R;
     /// The largest Courant number with which a fixed step is taken.
     fn most_courant(&self) -> f64 {

@@ -9,6 +9,7 @@ pub use sand::Sand;
 use crate::case::{self, Case, CaseError, Model, SchemeName, Stepping};
 use crate::grid::Grid;
 use crate::hadeler_kuttler::scheme::HadelerKuttler;
+use crate::kernels::Kernel;
 use crate::raster::RasterError;
 use crate::release::{ReleaseError, Sparse};
 use crate::results::{Plane, Under};
@@ -19,7 +20,7 @@ use crate::savage_hutter::ground::{Bed, Chute};
 use crate::savage_hutter::kinetic::{
     Kinetic, VERFAHREN_1, VERFAHREN_2, VERFAHREN_3, VERFAHREN_4, VERFAHREN_5,
 };
-use crate::scheme::{Boundary, Scheme};
+use crate::scheme::Boundary;
 use crate::simulation::{Simulation, StepSize};
 use crate::time::{EULER, SSP_RK2};
 
@@ -76,7 +77,7 @@ pub trait Visit {
     /// Do it, where the cells lie on `plane`.
     fn visit<const D: usize, S>(self, plane: Plane, simulation: Simulation<D, S>) -> Self::Output
     where
-        S: Scheme<D, f64, State = Flow<D, f64>>,
+        S: Kernel<D, State = Flow<D, f64>>,
         S::Ground: Bed<D, f64>;
     /// Do it for a growing sandpile.
     fn visit_sand<const D: usize>(

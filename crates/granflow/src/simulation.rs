@@ -8,10 +8,11 @@ use crate::backend::{EXITS, Leak, MOST_PARTS, MOST_TILES, Run, STRIP, Sweep, Tal
 use crate::boundary;
 use crate::field::Field;
 use crate::grid::{GHOSTS, Grid, Layout};
+use crate::kernels::Kernel;
 pub use crate::lanes::Instructions;
 use crate::observe::Maps;
 use crate::real::{Sum, each};
-use crate::scheme::{Boundary, Cell, Scheme, Spacing, Watch, Window};
+use crate::scheme::{Boundary, Cell, Parts, Scheme, Spacing, Watch, Window};
 use crate::time::Stages;
 use rayon::prelude::*;
 
@@ -236,7 +237,8 @@ impl<const D: usize, S: Scheme<D, f64>> Simulation<D, S> {
                     self.find_leaks([i, j]);
                 }
             }
-            let even = self.is_even(columns, rows);
+            // Of no use where a ground is kept in single precision: see `backend::strip`.
+            let even = S::Ground::SINGLE == 0 && self.is_even(columns, rows);
             let tile = &mut self.tiles[number];
             (tile.leaks, tile.even) = (from..self.leaks.len(), even);
             if !tile.leaks.is_empty() {
@@ -543,82 +545,6 @@ impl<const D: usize, S: Scheme<D, f64>> Simulation<D, S> {
         matches!(self.step_size, StepSize::Courant(_))
     }
 
-    /// One step, not beyond time `until`; returns dt.
-    pub fn advance(&mut self, until: f64) -> Result<f64, Failure> {
-        let wanted = self.wanted_step();
-        let left = until - self.time;
-        // A rest of the way that only rounding left over is part of the last step.
-        let rounding = if self.is_adaptive() { 0.0 } else { 1e-9 };
-        let last = wanted * (1.0 + rounding) >= left;
-        let (dt, time) = if last { (left, until) } else { (wanted, self.time + wanted) };
-        let advances = time > self.time && dt.is_finite();
-        if !advances {
-            return Err(Failure::Collapsed { step: self.step, time: self.time, dt });
-        }
-        let (courant, most) = (dt * self.rate(), self.scheme.most_courant());
-        if courant > most * (1.0 + 1e-9) {
-            let courant = wanted * self.rate();
-            return Err(Failure::TooLong { step: self.step, time: self.time, dt: wanted, courant, most });
-        }
-        self.wake();
-        let mut out = [0.0; 5];
-        for (stage, &keep) in self.stages.iter().enumerate() {
-            let last = stage + 1 == self.stages.len();
-            boundary::fill(&mut self.now, &self.grid, &self.layout, |axis, s| self.scheme.mirror(axis, &s));
-            let sweep = Sweep {
-                layout: self.layout,
-                size: self.grid.size,
-                grounds: &self.grounds,
-                from: &self.now,
-                reach: GHOSTS * self.stages.len(),
-                dt,
-                keep,
-                last,
-                time,
-                leaks: &self.leaks,
-            };
-            let maps = if last { self.maps.as_mut() } else { None };
-            let (tiles, found) = ((&*self.tiles, &*self.awake, &*self.runs), &mut *self.found);
-            sweep.run(&self.scheme, self.instructions, tiles, &mut self.next, maps, found);
-            std::mem::swap(&mut self.now, &mut self.next);
-            out = out.map(|o| o * (1.0 - keep));
-            for (&number, found) in self.awake.iter().zip(&self.found) {
-                let tally = &mut self.tallies[number as usize];
-                let stirs = if stage == 0 { found.stirs } else { found.stirs.or(tally.stirs) };
-                *tally = Tally { stirs, ..*found };
-            }
-            // In the order of the tiles, whatever runs they were computed in.
-            for &number in &self.leaky {
-                for (sum, part) in out.iter_mut().zip(self.tallies[number as usize].out) {
-                    *sum += (1.0 - keep) * part;
-                }
-            }
-        }
-        self.time = time;
-        self.step += 1;
-        self.last_dt = dt;
-        self.poured.add(dt * self.supply);
-        for (sum, part) in self.out.iter_mut().zip(out) {
-            sum.add(part);
-        }
-        let mut finite = true;
-        self.restless.clear();
-        for &number in &self.awake {
-            let tile = &self.tiles[number as usize];
-            let cells = (tile.columns[1] - tile.columns[0]) * (tile.rows[1] - tile.rows[0]);
-            self.updates += (cells * self.stages.len()) as u64;
-            let tally = &self.tallies[number as usize];
-            finite &= tally.finite;
-            self.levels[number as usize / self.across].stale = true;
-            self.unsummed[number as usize] = true;
-            if tally.stirs.anywhere {
-                self.restless.push(number);
-            }
-        }
-        self.find_rate();
-        if finite { Ok(dt) } else { Err(Failure::NotFinite { step: self.step, time: self.time }) }
-    }
-
     /// Find the largest rate and speed; rows in which all slept are as they were.
     fn find_rate(&mut self) {
         for (level, tallies) in self.levels.iter_mut().zip(self.tallies.chunks(self.across)) {
@@ -663,7 +589,7 @@ impl<const D: usize, S: Scheme<D, f64>> Simulation<D, S> {
                 continue;
             }
             let columns = wide.min(across - number % across);
-            // Where the ground is the same everywhere it is read once.
+            // Where the ground is the same everywhere the loops are others.
             let even = self.tiles[number].even;
             let alike = |waiting: &[bool], tile: usize| waiting[tile] && self.tiles[tile].even == even;
             let width = (0..columns).take_while(|k| alike(&self.waiting, number + k)).count();
@@ -750,6 +676,90 @@ impl<const D: usize, S: Scheme<D, f64>> Simulation<D, S> {
             self.survey();
         }
         fits
+    }
+}
+
+impl<const D: usize, S: Kernel<D>> Simulation<D, S> {
+    /// One step, not beyond time `until`; returns dt.
+    ///
+    /// # Errors
+    /// [`Failure`]: where it is [`Failure::NotFinite`] the state is that after the failed step, else nothing has been done.
+    pub fn advance(&mut self, until: f64) -> Result<f64, Failure> {
+        let wanted = self.wanted_step();
+        let left = until - self.time;
+        // A rest of the way that only rounding left over is part of the last step.
+        let rounding = if self.is_adaptive() { 0.0 } else { 1e-9 };
+        let last = wanted * (1.0 + rounding) >= left;
+        let (dt, time) = if last { (left, until) } else { (wanted, self.time + wanted) };
+        let advances = time > self.time && dt.is_finite();
+        if !advances {
+            return Err(Failure::Collapsed { step: self.step, time: self.time, dt });
+        }
+        let (courant, most) = (dt * self.rate(), self.scheme.most_courant());
+        if courant > most * (1.0 + 1e-9) {
+            let courant = wanted * self.rate();
+            return Err(Failure::TooLong { step: self.step, time: self.time, dt: wanted, courant, most });
+        }
+        self.wake();
+        let mut out = [0.0; 5];
+        for (stage, &keep) in self.stages.iter().enumerate() {
+            let last = stage + 1 == self.stages.len();
+            boundary::fill(&mut self.now, &self.grid, &self.layout, |axis, s| self.scheme.mirror(axis, &s));
+            let sweep = Sweep {
+                instructions: self.instructions,
+                tiles: &self.tiles,
+                awake: &self.awake,
+                runs: &self.runs,
+                layout: self.layout,
+                size: [self.grid.size[0], self.grid.size[D - 1]],
+                grounds: &self.grounds,
+                from: &self.now,
+                reach: GHOSTS * self.stages.len(),
+                dt,
+                keep,
+                last,
+                time,
+                leaks: &self.leaks,
+            };
+            let maps = if last { self.maps.as_mut() } else { None };
+            self.scheme.sweep(&sweep, &mut self.next, maps, &mut self.found);
+            std::mem::swap(&mut self.now, &mut self.next);
+            out = out.map(|o| o * (1.0 - keep));
+            for (&number, found) in self.awake.iter().zip(&self.found) {
+                let tally = &mut self.tallies[number as usize];
+                let stirs = if stage == 0 { found.stirs } else { found.stirs.or(tally.stirs) };
+                *tally = Tally { stirs, ..*found };
+            }
+            // In the order of the tiles, whatever runs they were computed in.
+            for &number in &self.leaky {
+                for (sum, part) in out.iter_mut().zip(self.tallies[number as usize].out) {
+                    *sum += (1.0 - keep) * part;
+                }
+            }
+        }
+        self.time = time;
+        self.step += 1;
+        self.last_dt = dt;
+        self.poured.add(dt * self.supply);
+        for (sum, part) in self.out.iter_mut().zip(out) {
+            sum.add(part);
+        }
+        let mut finite = true;
+        self.restless.clear();
+        for &number in &self.awake {
+            let tile = &self.tiles[number as usize];
+            let cells = (tile.columns[1] - tile.columns[0]) * (tile.rows[1] - tile.rows[0]);
+            self.updates += (cells * self.stages.len()) as u64;
+            let tally = &self.tallies[number as usize];
+            finite &= tally.rate < f64::INFINITY;
+            self.levels[number as usize / self.across].stale = true;
+            self.unsummed[number as usize] = true;
+            if tally.stirs.anywhere {
+                self.restless.push(number);
+            }
+        }
+        self.find_rate();
+        if finite { Ok(dt) } else { Err(Failure::NotFinite { step: self.step, time: self.time }) }
     }
 }
 

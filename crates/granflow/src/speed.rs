@@ -11,7 +11,7 @@ pub use setups::{Extent, SETUPS, Setup};
 pub use triad::Triad;
 
 use crate::field::Field;
-use crate::scheme::Scheme;
+use crate::kernels::Kernel;
 use crate::simulation::{Failure, Instructions, Simulation, Traffic};
 
 /// A run to be measured, of whatever scheme.
@@ -37,7 +37,7 @@ pub trait Load: Send {
 }
 
 /// A run and how it began.
-struct Begun<const D: usize, S: Scheme<D, f64>> {
+struct Begun<const D: usize, S: Kernel<D>> {
     run: Simulation<D, S>,
     clock: Vec<f64>,
     start: Field,
@@ -46,7 +46,7 @@ struct Begun<const D: usize, S: Scheme<D, f64>> {
     all: bool,
 }
 
-impl<const D: usize, S: Scheme<D, f64>> Begun<D, S> {
+impl<const D: usize, S: Kernel<D>> Begun<D, S> {
     fn new(run: Simulation<D, S>, all: bool) -> Self {
         let (clock, start) = (run.clock(), run.arrays().clone());
         let mut begun = Begun { run, clock, start, left: 0, all };
@@ -59,7 +59,7 @@ impl<const D: usize, S: Scheme<D, f64>> Begun<D, S> {
     }
 }
 
-impl<const D: usize, S: Scheme<D, f64>> Load for Begun<D, S> {
+impl<const D: usize, S: Kernel<D>> Load for Begun<D, S> {
     fn cells(&self) -> usize {
         self.run.grid().count()
     }
@@ -114,7 +114,7 @@ mod tests {
         }
     }
 
-    fn all_move_and_begin_anew<S: Scheme<2, f64>>(mut load: Begun<2, S>) {
+    fn all_move_and_begin_anew<S: Kernel<2>>(mut load: Begun<2, S>) {
         let mut go = || {
             while load.steps_left() > 0 {
                 load.step().unwrap();

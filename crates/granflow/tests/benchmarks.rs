@@ -5,13 +5,16 @@ mod oracle;
 mod support;
 
 use granflow::grid::Grid;
+use granflow::kernels::Kernel;
 use granflow::savage_hutter::Flow;
+use granflow::savage_hutter::balanced::Balanced;
 use granflow::savage_hutter::exact::{
     CapRelease, FlatDamBreak, Flow1, GranularJump, ParabolicCap, Riemann, SimilarityCap, SlidingSlab,
     SlopeDamBreak, ThackerParaboloid,
 };
+use granflow::savage_hutter::friction::Law;
 use granflow::savage_hutter::ground::{Bed, Chute};
-use granflow::scheme::{Boundary, Scheme};
+use granflow::scheme::Boundary;
 use granflow::simulation::{Simulation, StepSize};
 use support::{
     GRAVITY, ORDERS, Order, Surface, alone, depths, grid, incline, line, lost, on_plane, plane, run, states,
@@ -133,7 +136,7 @@ fn every_benchmark_converges_to_its_exact_solution() {
 }
 
 /// sum |h - exact| dx over the grid.
-fn l1<S: Scheme<1, f64, State = Flow<1, f64>>>(run: &Simulation<1, S>, exact: impl Fn(f64) -> f64) -> f64 {
+fn l1<S: Kernel<1, State = Flow<1, f64>>>(run: &Simulation<1, S>, exact: impl Fn(f64) -> f64) -> f64 {
     let apart =
         depths(run).into_iter().enumerate().map(|(i, h)| (h - exact(run.grid().centre([i])[0])).abs());
     apart.sum::<f64>() * run.grid().size[0]
@@ -402,7 +405,10 @@ fn turning<B: Bed<2, f64>>(
     mu: f64,
     pace: f64,
     end: f64,
-) -> f64 {
+) -> f64
+where
+    Balanced<Law, B>: Kernel<2, State = Flow<2, f64>, Ground = B>,
+{
     let runs = [24, 48, 96, 192].map(|cells| {
         let sheet = grid([cells; 2], [0.0; 2], 1.0 / cells as f64, Boundary::Periodic);
         let size = sheet.size[0];

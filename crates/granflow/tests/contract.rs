@@ -2,22 +2,26 @@
 
 mod support;
 
+use granflow::hadeler_kuttler::scheme::{ADAPTIVE, FIRST_ORDER, SECOND_ORDER};
+use granflow::hadeler_kuttler::site::Site;
+use granflow::hadeler_kuttler::table::Table;
+use granflow::kernels::Kernel;
 use granflow::savage_hutter::Flow;
 use granflow::savage_hutter::balanced::Balanced;
-use granflow::savage_hutter::friction::Coulomb;
+use granflow::savage_hutter::friction::{Coulomb, Law};
 use granflow::savage_hutter::ground::{Bed, Chute, Terrain};
 use granflow::savage_hutter::kinetic::{
     Kinetic, VERFAHREN_1, VERFAHREN_2, VERFAHREN_3, VERFAHREN_4, VERFAHREN_5,
 };
-use granflow::scheme::{Boundary, Cell, Faces, Scheme, Spacing, Window};
-use granflow::simulation::{Simulation, StepSize};
+use granflow::scheme::{Boundary, Cell, Faces, Parts, Spacing, Window};
+use granflow::simulation::{Failure, Instructions, Simulation, StepSize};
 use granflow::time::{EULER, SSP_RK2, Stages};
 use proptest::prelude::*;
 use support::{Dice, ORDERS, Order, Surface, alone, grid, lost, plane, run, states, steps, terrain};
 
 /// A property of a scheme on a chute in D dimensions.
 trait Property<const D: usize> {
-    fn check<S: Scheme<D, f64, State = Flow<D, f64>, Ground = Chute<D, f64>>>(
+    fn check<S: Kernel<D, State = Flow<D, f64>, Ground = Chute<D, f64>>>(
         &self,
         name: &str,
         scheme: impl Fn() -> S,
@@ -42,7 +46,7 @@ fn every<const D: usize>(mu: f64, property: &impl Property<D>) {
 }
 
 fn default_schemes<const D: usize>(mu: f64, property: &impl Property<D>) {
-    let friction = Coulomb { mu };
+    let friction = Law::Coulomb(Coulomb { mu });
     property.check::<Balanced<_, _>>("balanced", || Balanced::first(friction, 1e-6), EULER);
     property.check::<Balanced<_, _>>("balanced_2", || Balanced::second(friction, 1e-6), SSP_RK2);
 }
@@ -88,7 +92,7 @@ struct Consistency;
 
 impl Consistency {
     /// F(U, U) along `axis`, read off an update whose other faces lie between dry cells.
-    fn flux<const D: usize, S: Scheme<D, f64, State = Flow<D, f64>, Ground: Bed<D, f64>>>(
+    fn flux<const D: usize, S: Kernel<D, State = Flow<D, f64>, Ground: Bed<D, f64>>>(
         scheme: &S,
         ground: S::Ground,
         state: Flow<D, f64>,
@@ -109,7 +113,7 @@ impl Consistency {
         Flow { h: (without.h - with.h) / dt, q: std::array::from_fn(|k| (without.q[k] - with.q[k]) / dt) }
     }
 
-    fn compare<const D: usize, S: Scheme<D, f64, State = Flow<D, f64>, Ground: Bed<D, f64>>>(
+    fn compare<const D: usize, S: Kernel<D, State = Flow<D, f64>, Ground: Bed<D, f64>>>(
         name: &str,
         scheme: &S,
         ground: S::Ground,
@@ -134,7 +138,7 @@ impl Consistency {
 }
 
 impl<const D: usize> Property<D> for Consistency {
-    fn check<S: Scheme<D, f64, State = Flow<D, f64>, Ground = Chute<D, f64>>>(
+    fn check<S: Kernel<D, State = Flow<D, f64>, Ground = Chute<D, f64>>>(
         &self,
         name: &str,
         scheme: impl Fn() -> S,
@@ -165,7 +169,7 @@ fn flux_of_equal_states_is_the_flux_of_the_equation() {
 struct Mirror(usize);
 
 impl<const D: usize> Property<D> for Mirror {
-    fn check<S: Scheme<D, f64, State = Flow<D, f64>, Ground = Chute<D, f64>>>(
+    fn check<S: Kernel<D, State = Flow<D, f64>, Ground = Chute<D, f64>>>(
         &self,
         name: &str,
         scheme: impl Fn() -> S,
@@ -212,7 +216,7 @@ fn a_mirrored_run_is_the_mirror_image_to_the_last_bit() {
 struct Transpose;
 
 impl Property<2> for Transpose {
-    fn check<S: Scheme<2, f64, State = Flow<2, f64>, Ground = Chute<2, f64>>>(
+    fn check<S: Kernel<2, State = Flow<2, f64>, Ground = Chute<2, f64>>>(
         &self,
         name: &str,
         scheme: impl Fn() -> S,
@@ -254,8 +258,8 @@ struct Embedded(usize);
 impl Embedded {
     fn compare<S, T>(&self, name: &str, line: Simulation<1, S>, sheet: Simulation<2, T>)
     where
-        S: Scheme<1, f64, State = Flow<1, f64>>,
-        T: Scheme<2, f64, State = Flow<2, f64>>,
+        S: Kernel<1, State = Flow<1, f64>>,
+        T: Kernel<2, State = Flow<2, f64>>,
     {
         let (mut line, mut sheet) = (line, sheet);
         alone(|| steps(&mut line, 100));
@@ -275,8 +279,8 @@ impl Embedded {
 
     fn pair<S, T>(&self, name: &str, one: S, two: T, stages: Stages)
     where
-        S: Scheme<1, f64, State = Flow<1, f64>, Ground = Chute<1, f64>>,
-        T: Scheme<2, f64, State = Flow<2, f64>, Ground = Chute<2, f64>>,
+        S: Kernel<1, State = Flow<1, f64>, Ground = Chute<1, f64>>,
+        T: Kernel<2, State = Flow<2, f64>, Ground = Chute<2, f64>>,
     {
         let start = rough::<1>(13, stays_positive(name));
         let step = StepSize::Fixed(0.002);
@@ -324,7 +328,7 @@ fn two_dimensions_of_one_dimensional_data_are_one_dimension() {
 }
 
 /// Runs at the largest allowed step and looks at every depth after every step.
-fn lowest<const D: usize, S: Scheme<D, f64, State = Flow<D, f64>>>(
+fn lowest<const D: usize, S: Kernel<D, State = Flow<D, f64>>>(
     run: &mut Simulation<D, S>,
     count: usize,
 ) -> f64 {
@@ -488,7 +492,7 @@ fn schemes_of_the_mean_depth_lose_positivity_on_dry_ground() {
 struct Mass(Boundary);
 
 impl<const D: usize> Property<D> for Mass {
-    fn check<S: Scheme<D, f64, State = Flow<D, f64>, Ground = Chute<D, f64>>>(
+    fn check<S: Kernel<D, State = Flow<D, f64>, Ground = Chute<D, f64>>>(
         &self,
         name: &str,
         scheme: impl Fn() -> S,
@@ -560,6 +564,54 @@ fn bits<B: Bed<2, f64>>(run: &support::Run<2, B>) -> Vec<u64> {
     all.into_iter().map(f64::to_bits).collect()
 }
 
+/// Sets each part of one cell in turn to what is no number; the next step must find it, and before that nothing.
+fn finds_what_is_no_number<const D: usize, S: Kernel<D>>(
+    name: &str,
+    build: impl Fn() -> Simulation<D, S>,
+    cell: [usize; D],
+) {
+    for instructions in [Instructions::Scalar, Instructions::Narrow, Instructions::Widest] {
+        for (part, bad) in (0..<S::State as Parts<f64>>::COUNT)
+            .flat_map(|part| [f64::NAN, f64::INFINITY].map(|bad| (part, bad)))
+        {
+            let mut run = build();
+            run.use_instructions(instructions);
+            assert!(run.advance(f64::INFINITY).is_ok(), "{name}");
+            let mut arrays = run.arrays().clone();
+            arrays.parts[part][run.place(cell)] = bad;
+            run.restore(&run.clock(), arrays);
+            let failure = run.advance(f64::INFINITY).expect_err(name);
+            // No step is short enough for a speed that is infinite from the start.
+            let found = matches!(failure, Failure::NotFinite { .. }) || bad == f64::INFINITY;
+            assert!(found, "{name}, part {part}, {bad}: {failure}");
+        }
+    }
+}
+
+#[test]
+fn a_run_ends_where_the_state_is_no_number() {
+    alone(|| {
+        let sheet = grid([50, 40], [0.0; 2], 0.02, Boundary::Wall);
+        let ground = |_| plane([0.1, 0.0], 0.4);
+        for order in ORDERS {
+            let begin = || {
+                let (scheme, stages) = (order.scheme::<Chute<2, f64>>(0.3, 1e-6), order.stages());
+                Simulation::new(scheme, sheet, stages, StepSize::Fixed(1e-4), ground, rough(3, false))
+            };
+            finds_what_is_no_number(&format!("balanced, {order:?}"), begin, [17, 23]);
+        }
+        let table = Table::rectangle([50, 40], [[true; 2]; 2]);
+        let site = Site::level(table, [0.02; 2]);
+        for scheme in [FIRST_ORDER, SECOND_ORDER, ADAPTIVE] {
+            let begin = || {
+                let (nodes, cells) = (vec![0.0; 51 * 41], vec![0.1; 50 * 40]);
+                site.simulation(scheme, StepSize::Fixed(1e-4), &vec![0.5; 50 * 40], (&nodes, &cells))
+            };
+            finds_what_is_no_number(&format!("{scheme:?}"), begin, [17, 23]);
+        }
+    });
+}
+
 #[test]
 fn mass_is_kept_on_terrain_with_a_hole() {
     for order in ORDERS {
@@ -570,7 +622,10 @@ fn mass_is_kept_on_terrain_with_a_hole() {
     }
 }
 
-fn threads_agree<B: Bed<2, f64>>(name: &str, build: impl Fn() -> support::Run<2, B>, count: usize) {
+fn threads_agree<B: Bed<2, f64>>(name: &str, build: impl Fn() -> support::Run<2, B>, count: usize)
+where
+    Balanced<Law, B>: Kernel<2, State = Flow<2, f64>, Ground = B>,
+{
     let results = [1, 2, 3].map(|threads| {
         let mut run = build();
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("threads");

@@ -3,12 +3,12 @@
 
 use granflow::case::Case;
 use granflow::hadeler_kuttler::scheme::HadelerKuttler;
+use granflow::kernels::Kernel;
 use granflow::raster::{Crs, Raster};
 use granflow::results::Plane;
 use granflow::run::{Options, run};
 use granflow::savage_hutter::Flow;
 use granflow::savage_hutter::ground::Bed;
-use granflow::scheme::Scheme;
 use granflow::setup::{Sand, Scene, Visit};
 use granflow::simulation::Simulation;
 use std::alloc::{GlobalAlloc, Layout, System};
@@ -107,7 +107,7 @@ impl Visit for Fields {
     type Output = [usize; 2];
     fn visit<const D: usize, S>(self, _plane: Plane, _simulation: Simulation<D, S>) -> [usize; 2]
     where
-        S: Scheme<D, f64, State = Flow<D, f64>>,
+        S: Kernel<D, State = Flow<D, f64>>,
         S::Ground: Bed<D, f64>,
     {
         [false, true].map(Simulation::<D, S>::bytes_per_cell)

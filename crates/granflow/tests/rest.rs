@@ -3,9 +3,10 @@
 mod oracle;
 mod support;
 
+use granflow::kernels::Kernel;
 use granflow::savage_hutter::Flow;
 use granflow::savage_hutter::ground::{Bed, Chute, Terrain};
-use granflow::scheme::{Boundary, Scheme};
+use granflow::scheme::Boundary;
 use granflow::simulation::Simulation;
 use oracle::published;
 use support::{
@@ -59,7 +60,7 @@ const SHAPES: [Shape; 7] = [
 ];
 
 /// Nothing changes in `count` steps, and the run knows that it is at rest.
-fn rests<const D: usize, S: Scheme<D, f64, State = Flow<D, f64>>>(
+fn rests<const D: usize, S: Kernel<D, State = Flow<D, f64>>>(
     name: &str,
     run: &mut Simulation<D, S>,
     count: usize,
@@ -82,7 +83,7 @@ fn rests<const D: usize, S: Scheme<D, f64, State = Flow<D, f64>>>(
 }
 
 /// Something moves in the first steps (and may come to rest again, a millionth lower).
-fn starts<const D: usize, S: Scheme<D, f64, State = Flow<D, f64>>>(name: &str, run: &mut Simulation<D, S>) {
+fn starts<const D: usize, S: Kernel<D, State = Flow<D, f64>>>(name: &str, run: &mut Simulation<D, S>) {
     let moved = alone(|| {
         (0..3).any(|_| {
             steps(run, 1);

@@ -53,16 +53,13 @@ impl<const MOST: usize> Row<MOST> {
     }
 }
 
-/// Most numbers of the primes, of the edges, of the flux, of the corner of a scheme.
-pub(super) const MOST_PRIME: usize = 6;
+/// Most numbers of the edges, of the flux, of the corner of a scheme.
 pub(super) const MOST_EDGES: usize = 40;
 pub(super) const MOST_FLUX: usize = 8;
 pub(super) const MOST_CORNER: usize = 1;
 
 /// The rows of a strip.
 pub(super) struct Scratch {
-    /// What follows from the cells of a row alone.
-    pub prime: Row<MOST_PRIME>,
     /// Two rows of edges: of the row that is updated and the one above.
     pub edges: [Row<MOST_EDGES>; 2],
     /// Through the lower faces along x of a row.
@@ -71,10 +68,9 @@ pub(super) struct Scratch {
     pub below: Row<MOST_FLUX>,
     /// At the lower left corners of a row, and of the row above.
     pub corners: [Row<MOST_CORNER>; 2],
-    /// The new states of a row, and which cells of each vector have one, a bit each.
+    /// The new states of a row.
     pub fresh: Row<MOST_PARTS>,
-    pub live: [u16; STRIP],
-    /// Which cells of each vector are those of the strip.
+    /// Which cells of each vector are those of the strip, a bit each.
     pub ours: [u16; STRIP],
 }
 
@@ -85,7 +81,6 @@ impl Scratch {
         let start = scratch.as_mut_ptr();
         // SAFETY: the rows are numbers that need not be initialized, the rest is. (A constant would be copied here.)
         unsafe {
-            (&raw mut (*start).live).write([0; STRIP]);
             (&raw mut (*start).ours).write([0; STRIP]);
             scratch.assume_init()
         }

@@ -5,19 +5,20 @@ use super::tally::{Count, Tally};
 use super::{EXITS, Leak, MOST_PARTS, Sheet, Sweep, Tile};
 use crate::field::{MOST, has};
 use crate::grid::Layout;
-use crate::lanes::{MOST_LANES, Wide, expect};
+use crate::lanes::{Wide, expect};
+use crate::real::each;
 use crate::scheme::{Cell, Faces, Parts, Scheme, Side, Spacing, Watch, Window};
 
-/// Tiles under way. All by value: what the inner loop reads through a reference it would have to read anew after every
-/// number that it writes.
-pub(super) struct Strip<'a, const D: usize, L: Wide, T: Scheme<D, L>> {
+/// Tiles under way, on ground that is everywhere the same (`EVEN`) or not. All by value: what the inner loop reads through a
+/// reference it would have to read anew after every number that it writes.
+struct Strip<'a, const D: usize, const EVEN: bool, L: Wide, T: Scheme<D, L>> {
     layout: Layout,
     scheme: T,
     /// Where the numbers of the states and of the grounds begin.
     from: [*const u8; MOST],
     grounds: [*const u8; MOST],
-    /// All bits; none where one ground stands for all.
-    varied: usize,
+    /// The ground where it is even, else of one of the cells.
+    even: T::Ground,
     to: [*mut f64; MOST_PARTS],
     maps: Option<&'a [Sheet<'a, f32>; 4]>,
     leaks: &'a [Leak],
@@ -33,26 +34,12 @@ pub(super) struct Strip<'a, const D: usize, L: Wide, T: Scheme<D, L>> {
 pub(super) struct Desk {
     scratch: Scratch,
     count: Count,
-    ground: [Lane; MOST],
-}
-
-/// One number for all lanes.
-#[derive(Clone, Copy)]
-#[repr(align(64))]
-struct Lane([f64; MOST_LANES]);
-
-impl Lane {
-    /// In single precision, two in the place of one.
-    fn single(value: f32) -> Self {
-        let bits = u64::from(value.to_bits());
-        Lane([f64::from_bits(bits << 32 | bits); MOST_LANES])
-    }
 }
 
 impl Desk {
     #[inline(always)]
     pub(super) fn new() -> Self {
-        Desk { scratch: Scratch::new(), count: Count::new(), ground: [Lane([0.0; MOST_LANES]); MOST] }
+        Desk { scratch: Scratch::new(), count: Count::new() }
     }
 }
 
@@ -66,12 +53,14 @@ struct Vector<L: Wide> {
 }
 
 /// The cells around one and around those that share its vector.
-struct Around<'a, const D: usize, L: Wide, T: Scheme<D, L>> {
-    strip: &'a Strip<'a, D, L, T>,
+struct Around<'a, const D: usize, const EVEN: bool, L: Wide, T: Scheme<D, L>> {
+    strip: &'a Strip<'a, D, EVEN, L, T>,
     place: usize,
 }
 
-impl<const D: usize, L: Wide, T: Scheme<D, L>> Window<D, L, T::State, T::Ground> for Around<'_, D, L, T> {
+impl<const D: usize, const EVEN: bool, L: Wide, T: Scheme<D, L>> Window<D, L, T::State, T::Ground>
+    for Around<'_, D, EVEN, L, T>
+{
     #[inline(always)]
     fn at(&self, offset: [isize; D]) -> Cell<T::State, T::Ground> {
         self.strip.cell(self.strip.layout.moved(self.place, offset))
@@ -82,57 +71,64 @@ impl<const D: usize, L: Wide, T: Scheme<D, L>> Window<D, L, T::State, T::Ground>
     }
 }
 
-impl<'a, const D: usize, L: Wide, T: Scheme<D, L>> Strip<'a, D, L, T> {
-    /// Compute a rectangle of tiles, `across` side by side, row by row; leave a tally each.
+/// Compute a rectangle of tiles, `across` side by side, row by row; leave a tally each.
+#[inline(always)]
+pub(super) fn run<'a, 't, const D: usize, L: Wide, T: Scheme<D, L>, S: Scheme<D, f64>>(
+    sweep: &Sweep<'a>,
+    scheme: &T,
+    tiles: impl Iterator<Item = &'t Tile> + Clone,
+    across: usize,
+    to: (&[Option<Sheet>; MOST_PARTS], Option<&'a [Sheet<'a, f32>; 4]>),
+    tallies: &mut [Tally],
+    Desk { scratch, count }: &mut Desk,
+) {
+    const { assert!(T::State::COUNT <= MOST_PARTS && T::Ground::COUNT <= MOST) };
+    // Mountains, which are kept in single precision, are seldom even, and one cell at a time is slow anyway: no loops are
+    // compiled for them.
+    if const { S::Ground::SINGLE == 0 && L::WIDTH > 1 } && tiles.clone().all(|tile| tile.even) {
+        let strip = Strip::<D, true, L, T>::new::<S>(sweep, scheme, tiles.clone(), to);
+        strip.sweep(tiles, across, tallies, scratch, count);
+    } else {
+        let strip = Strip::<D, false, L, T>::new::<S>(sweep, scheme, tiles.clone(), to);
+        strip.sweep(tiles, across, tallies, scratch, count);
+    }
+}
+
+impl<'a, const D: usize, const EVEN: bool, L: Wide, T: Scheme<D, L>> Strip<'a, D, EVEN, L, T> {
     #[inline(always)]
-    pub(super) fn run<'t, S: Scheme<D, f64>>(
-        sweep: &Sweep<D>,
+    fn new<'t, S: Scheme<D, f64>>(
+        sweep: &Sweep<'a>,
         scheme: &T,
-        tiles: impl Iterator<Item = &'t Tile> + Clone,
-        across: usize,
-        (to, maps): (&[Option<Sheet>; MOST_PARTS], Option<&[Sheet<f32>; 4]>),
-        tallies: &mut [Tally],
-        desk: &mut Desk,
-    ) {
-        const { assert!(T::State::COUNT <= MOST_PARTS && T::Ground::COUNT <= MOST) };
-        let Some(Tile { columns, rows, .. }) = tiles.clone().next() else { return };
-        let even = tiles.clone().all(|tile| tile.even);
-        let place = sweep.layout.place(columns[0] as isize, rows[0] as isize);
-        let mut grounds = sweep.grounds.starts::<S::Ground>();
-        if even {
-            for (k, (start, lanes)) in
-                grounds.iter_mut().zip(&mut desk.ground).take(T::Ground::COUNT).enumerate()
-            {
-                if !has(T::Ground::SHARED, k) {
-                    // SAFETY: the cell lies inside the layout.
-                    *lanes = unsafe {
-                        if has(T::Ground::SINGLE, k) {
-                            Lane::single(*start.cast::<f32>().add(place))
-                        } else {
-                            Lane([*start.cast::<f64>().add(place); MOST_LANES])
-                        }
-                    };
-                    *start = lanes.0.as_ptr().cast();
-                }
-            }
-        }
-        let strip = Strip {
+        mut tiles: impl Iterator<Item = &'t Tile>,
+        (to, maps): (&[Option<Sheet>; MOST_PARTS], Option<&'a [Sheet<'a, f32>; 4]>),
+    ) -> Self {
+        let corner = tiles.next().map_or([0; 2], |tile| [tile.columns[0], tile.rows[0]]);
+        let place = sweep.layout.place(corner[0] as isize, corner[1] as isize);
+        let mut parts = [0.0; MOST];
+        sweep.grounds.get::<S::Ground>(place).scatter(
+            #[inline(always)]
+            |k, part| parts[k] = part,
+        );
+        let even = T::Ground::gather(
+            #[inline(always)]
+            |k| L::of(parts[k]),
+        );
+        Strip {
             layout: sweep.layout,
             scheme: *scheme,
             from: sweep.from.starts::<S::State>(),
-            grounds,
-            varied: if even { 0 } else { usize::MAX },
+            grounds: sweep.grounds.starts::<S::Ground>(),
+            even,
             to: to.each_ref().map(|sheet| sheet.as_ref().map_or(std::ptr::null_mut(), |sheet| sheet.start)),
             maps,
             leaks: sweep.leaks,
-            spacing: Spacing::new(sweep.size),
+            spacing: Spacing::new(each!(k => sweep.size[k])),
             reach: sweep.reach,
             dt: L::of(sweep.dt),
             keep: sweep.keep,
             last: sweep.last,
             time: sweep.time,
-        };
-        strip.sweep(tiles, across, tallies, &mut desk.scratch, &mut desk.count);
+        }
     }
 
     #[inline(always)]
@@ -149,12 +145,15 @@ impl<'a, const D: usize, L: Wide, T: Scheme<D, L>> Strip<'a, D, L, T> {
 
     #[inline(always)]
     fn ground(&self, place: usize) -> T::Ground {
+        if EVEN {
+            return self.even;
+        }
         // SAFETY: as in `cell`.
         unsafe {
             T::Ground::gather(
                 #[inline(always)]
                 |k| {
-                    let (start, place) = (*self.grounds.get_unchecked(k), place & self.varied);
+                    let start = *self.grounds.get_unchecked(k);
                     if has(T::Ground::SHARED, k) {
                         L::of(*start.cast())
                     } else if has(T::Ground::SINGLE, k) {
@@ -180,8 +179,9 @@ impl<'a, const D: usize, L: Wide, T: Scheme<D, L>> Strip<'a, D, L, T> {
         let (Some(lowest), Some(highest)) = (tiles.clone().next(), tiles.clone().last()) else { return };
         let columns = [lowest.columns[0], highest.columns[1]];
         let (first, end) = (lowest.rows[0] as isize, highest.rows[1] as isize);
+        let none = EVEN && L::any(self.scheme.outside(&self.ground(0)));
         for m in Self::vectors(columns) {
-            let ours = ((1_u128 << (columns[1] - columns[0])) - 1) << 1;
+            let ours = if none { 0 } else { ((1_u128 << (columns[1] - columns[0])) - 1) << 1 };
             scratch.ours[m / L::WIDTH] = (ours >> m) as u16;
         }
         let leak = tiles.clone().any(|tile| !tile.leaks.is_empty());
@@ -244,17 +244,15 @@ impl<'a, const D: usize, L: Wide, T: Scheme<D, L>> Strip<'a, D, L, T> {
     /// Find the edges of row `number`.
     #[inline(always)]
     fn edges(&self, columns: [usize; 2], number: isize, first: isize, scratch: &mut Scratch) {
-        let Scratch { prime, edges, .. } = scratch;
-        let above = &mut edges[(number - first + 2) as usize % 2];
+        let above = &mut scratch.edges[(number - first + 2) as usize % 2];
         let place = self.start(columns, number);
         // One vector ahead: its roots and divisions are under way while this one's sums are formed.
-        prime.put(0, self.scheme.prime(&self.cell(place)));
+        let mut prime = self.scheme.prime(&self.cell(place));
         for m in Self::vectors(columns) {
             self.expect(place + m);
-            prime.put(m + L::WIDTH, self.scheme.prime(&self.cell(place + m + L::WIDTH)));
-            // SAFETY: the row has been put up to here.
-            let prime: T::Prime = unsafe { prime.get(m as isize) };
+            let next = self.scheme.prime(&self.cell(place + m + L::WIDTH));
             above.put(m, self.scheme.reconstruct(&Around { strip: self, place: place + m }, &prime));
+            prime = next;
         }
         above.mend(if number <= first { T::Edges::COUNT } else { 0 }, Self::end(columns));
     }
@@ -271,7 +269,7 @@ impl<'a, const D: usize, L: Wide, T: Scheme<D, L>> Strip<'a, D, L, T> {
                 expect(self.from[k].cast::<f64>().wrapping_add(above + m).cast());
                 expect(self.to[k].wrapping_add(place + m).cast());
             }
-            if self.varied != 0 {
+            if !EVEN {
                 for k in 0..T::Ground::COUNT {
                     let start = self.grounds[k];
                     if has(T::Ground::SINGLE, k) {
@@ -325,16 +323,19 @@ impl<'a, const D: usize, L: Wide, T: Scheme<D, L>> Strip<'a, D, L, T> {
         scratch: &mut Scratch,
         count: &mut Count,
     ) {
-        let Scratch { edges, across, below, corners, fresh, live, ours, .. } = scratch;
+        let Scratch { edges, across, below, corners, fresh, ours, .. } = scratch;
         let above = &edges[(number - first) as usize % 2];
         let row = if D > 1 { &edges[(number - first + 1) as usize % 2] } else { above };
         let high = &corners[(number - first) as usize % 2];
         let low = if D > 1 { &corners[(number - first + 1) as usize % 2] } else { high };
         let updates = D == 1 || number > first;
         let place = self.start(columns, if D > 1 { number - 1 } else { number });
+        // The cells of the vector before that have a new state.
+        let mut before = L::from_bits(0);
         for m in Self::vectors(columns) {
             let at = m as isize;
-            // SAFETY: all rows have been put and mended; `below` in the row before.
+            // SAFETY: all rows have been put and mended, `below` in the row before (in the first row of a rectangle it and `across`
+            // hold anything, and what is made of that is not used); a strip has at most STRIP cells.
             unsafe {
                 let edges: T::Edges = row.get(at);
                 let mut faces = [Faces { lo: across.get(at), hi: across.get(at + 1) }; D];
@@ -344,24 +345,24 @@ impl<'a, const D: usize, L: Wide, T: Scheme<D, L>> Strip<'a, D, L, T> {
                     below.put(m, up);
                 }
                 if updates {
-                    let number = m / L::WIDTH;
                     if m > 0 {
-                        self.watch(m - L::WIDTH, place, fresh, live[number - 1], count);
+                        self.watch(m - L::WIDTH, place, fresh, before, count);
                     }
-                    let cell = self.cell(place + m);
-                    let ours = L::from_bits(u64::from(ours[number])) & !self.scheme.outside(&cell.ground);
-                    live[number] = L::bits(ours) as u16;
-                    if L::any(ours) {
+                    let mut live = L::from_bits(u64::from(*ours.get_unchecked(m / L::WIDTH)));
+                    if !EVEN {
+                        live = live & !self.scheme.outside(&self.ground(place + m));
+                    }
+                    before = live;
+                    if L::any(live) {
                         let corners = [[low.get(at), low.get(at + 1)], [high.get(at), high.get(at + 1)]];
-                        let vector = Vector { column: m, place: place + m, live: ours };
+                        let vector = Vector { column: m, place: place + m, live };
                         fresh.put(m, self.update(count, vector, &edges, &faces, &corners));
                     }
                 }
             }
         }
         if updates {
-            let m = Self::end(columns) - L::WIDTH;
-            self.watch(m, place, fresh, live[m / L::WIDTH], count);
+            self.watch(Self::end(columns) - L::WIDTH, place, fresh, before, count);
         }
     }
 
@@ -399,41 +400,45 @@ impl<'a, const D: usize, L: Wide, T: Scheme<D, L>> Strip<'a, D, L, T> {
             #[inline(always)]
             |k, value| input[k] = value,
         );
-        let (mut sum, mut differs) = (zero, zero.lt(zero));
         new.scatter(
             #[inline(always)]
             |k, value| {
                 // SAFETY: as the caller promises.
                 unsafe { value.store_where(live, self.to[k].add(place)) };
-                sum = sum + value;
-                differs = differs | !value.same(input[k]);
                 if self.last && T::DRIFTS {
                     count.change(k, column, live, (value - before[k]).abs());
                 }
             },
         );
         if !count.all_stir::<L>(column) {
-            count.stir::<L>(column, live & (differs | !self.scheme.rests(&here)));
-        }
-        let infinite = live & !(sum * zero).same(zero);
-        if L::any(infinite) {
-            count.lose::<L>(column, infinite);
+            let mut stays = self.scheme.rests(&here);
+            new.scatter(
+                #[inline(always)]
+                |k, value| stays = stays & value.same(input[k]),
+            );
+            count.stir::<L>(column, live & !stays);
         }
         new
     }
 
     /// Take the new states of a vector into account: one vector behind, while the next one's roots and divisions are under way.
     #[inline(always)]
-    fn watch(&self, m: usize, start: usize, fresh: &Row<MOST_PARTS>, live: u16, count: &mut Count) {
-        if !self.last || live == 0 {
+    fn watch(&self, m: usize, start: usize, fresh: &Row<MOST_PARTS>, live: L::Mask, count: &mut Count) {
+        if !self.last || !L::any(live) {
             return;
         }
         let place = start + m;
         // SAFETY: the vector has been put; the ground is that of the same cells.
         let cell = Cell { state: unsafe { fresh.get(m as isize) }, ground: self.ground(place) };
-        let live = L::from_bits(u64::from(live));
         let watch = self.scheme.watch(&cell);
-        count.watch::<L>(m, live, self.scheme.rate(&cell, &self.spacing), watch.square);
+        // Where a part of the state is no number the rate is infinite, as it is where one is.
+        let mut rate = self.scheme.rate(&cell, &self.spacing);
+        cell.state.scatter(
+            #[inline(always)]
+            |_, part| rate = part.mul_add(L::zero(), rate),
+        );
+        let most = L::of(f64::INFINITY);
+        count.watch::<L>(m, live, L::select(rate.lt(most), rate, most), watch.square);
         if let Some(maps) = self.maps {
             // SAFETY: these are cells of ours.
             unsafe { self.mark(maps, place, live, &watch) };

@@ -7,7 +7,7 @@ use std::ops::Range;
 /// What a sweep found in one tile.
 #[derive(Clone, Copy, Debug)]
 pub struct Tally {
-    /// Largest sum of signal speeds over dx \[1/time\].
+    /// Largest sum of signal speeds over dx \[1/time\]; infinite where a state is no number.
     pub rate: f64,
     /// Largest speed along the bed.
     pub speed: f64,
@@ -17,8 +17,6 @@ pub struct Tally {
     pub change: [f64; MOST_PARTS],
     /// Where a cell changed, or may yet.
     pub stirs: Stirs,
-    /// Every number is finite.
-    pub finite: bool,
 }
 
 impl Tally {
@@ -29,7 +27,6 @@ impl Tally {
         out: [0.0; EXITS.len()],
         change: [0.0; MOST_PARTS],
         stirs: Stirs { anywhere: false, near: [[false; 2]; 2] },
-        finite: true,
     };
 }
 
@@ -88,22 +85,13 @@ pub(super) struct Count {
     stirs: u128,
     before: u128,
     low: u128,
-    infinite: u128,
 }
 
 impl Count {
     pub(super) const fn new() -> Self {
         const { assert!(STRIP <= 128) };
         let none = Columns::NONE;
-        Count {
-            rate: none,
-            square: none,
-            change: [none; MOST_PARTS],
-            stirs: 0,
-            before: 0,
-            low: 0,
-            infinite: 0,
-        }
+        Count { rate: none, square: none, change: [none; MOST_PARTS], stirs: 0, before: 0, low: 0 }
     }
 
     /// Take the cells of `live` into account, the first of which lies in `column`: their rates and squared speeds.
@@ -129,11 +117,6 @@ impl Count {
     #[inline(always)]
     pub(super) fn stir<L: Wide>(&mut self, column: usize, mask: L::Mask) {
         self.stirs |= u128::from(L::bits(mask)) << column;
-    }
-    /// Note the cells that are no number.
-    #[inline(always)]
-    pub(super) fn lose<L: Wide>(&mut self, column: usize, mask: L::Mask) {
-        self.infinite |= u128::from(L::bits(mask)) << column;
     }
 
     /// So many of `rows` rows of the tiles are done; a step reaches over `reach` cells.
@@ -172,12 +155,11 @@ impl Count {
             anywhere: some(all),
             near: [ends.map(|end| some(all & end)), [some(self.low & bits), some(high)]],
         };
-        tally.finite = self.infinite & bits == 0;
         let Count { rate, square, change: [a, b, c], .. } = self;
         for quantity in [rate, square, a, b, c] {
             quantity.0[columns.clone()].fill(0.0);
         }
-        for kept in [&mut self.stirs, &mut self.before, &mut self.low, &mut self.infinite] {
+        for kept in [&mut self.stirs, &mut self.before, &mut self.low] {
             *kept &= !bits;
         }
         tally

@@ -2,11 +2,12 @@
 
 use crate::hadeler_kuttler::scheme::HadelerKuttler;
 use crate::hadeler_kuttler::{Ground, Pile};
+use crate::kernels::Kernel;
 use crate::output::summary::Summary;
 use crate::results::Plane;
 use crate::savage_hutter::Flow;
 use crate::savage_hutter::ground::Bed;
-use crate::scheme::{Cell, Scheme};
+use crate::scheme::Cell;
 use crate::setup::Sand;
 use crate::simulation::Simulation;
 
@@ -14,7 +15,7 @@ use crate::simulation::Simulation;
 pub(super) type Maps = Vec<(&'static str, Vec<f64>)>;
 
 /// A model as a run sees it.
-pub(super) trait Model<const D: usize>: Scheme<D, f64> + Sized {
+pub(super) trait Model<const D: usize>: Kernel<D> + Sized {
     /// Are peaks and times of every cell kept?
     const PEAKS: bool;
 
@@ -34,7 +35,7 @@ pub(super) trait Model<const D: usize>: Scheme<D, f64> + Sized {
 
 impl<const D: usize, S> Model<D> for S
 where
-    S: Scheme<D, f64, State = Flow<D, f64>>,
+    S: Kernel<D, State = Flow<D, f64>>,
     S::Ground: Bed<D, f64>,
 {
     const PEAKS: bool = true;

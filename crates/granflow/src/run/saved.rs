@@ -4,12 +4,12 @@ use super::model::Model;
 use super::writer::Writer;
 use super::{Run, RunError, Work};
 use crate::field::Field;
+use crate::kernels::Kernel;
 use crate::output;
 use crate::output::checkpoint::{Checkpoint, Numbers, case_hash};
 use crate::output::frames::Frames;
 use crate::output::ledger::Ledger;
 use crate::results::Plane;
-use crate::scheme::Scheme;
 use crate::setup::Sand;
 use crate::simulation::{CLOCK, Simulation};
 use std::path::{Path, PathBuf};
@@ -150,7 +150,7 @@ fn checkpoint_in(directory: &Path) -> PathBuf {
 }
 
 /// Put a checkpoint back; what does not fit, if anything.
-fn restore<const D: usize, S: Scheme<D, f64>>(
+fn restore<const D: usize, S: Kernel<D>>(
     simulation: &mut Simulation<D, S>,
     saved: &mut Checkpoint<'static>,
 ) -> Option<String> {

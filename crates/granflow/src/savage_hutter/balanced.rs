@@ -9,18 +9,20 @@ use super::friction::Friction;
 use super::ground::{Bed, Towards};
 use super::{Flow, normal};
 use crate::limiter::{self, Varies};
-use crate::real::{Real, each, largest, unroll};
+use crate::real::{Real, each, largest, total, unroll};
 use crate::scheme::{Cell, Faces, Near, Parts, Scheme, Side, Spacing, Watch, Window, Work, parts};
 use std::marker::PhantomData;
 
 /// The default scheme: friction law, thinnest moving depth, order of accuracy. Where it is known that there are no slopes,
 /// `LIMITED` is false.
 #[derive(Clone, Copy, Debug)]
+#[repr(C)]
 pub struct Balanced<F, B, const LIMITED: bool = true> {
+    /// A cell thinner than this keeps what it has (units of h); at least the smallest normal number. (It comes before the law: the
+    /// compiler reads all parameters of a law at once, and what follows them, and then takes that apart in every cell.)
+    film: f64,
     /// The friction law.
     pub friction: F,
-    /// A cell thinner than this keeps what it has (units of h); at least the smallest normal number.
-    film: f64,
     /// Limited slopes of h and u (second order, with [`crate::time::SSP_RK2`]).
     pub slopes: bool,
     bed: PhantomData<fn() -> B>,
@@ -34,6 +36,14 @@ impl<F, B> Balanced<F, B> {
     /// Second order, to be stepped by [`crate::time::SSP_RK2`].
     pub fn second(friction: F, film: f64) -> Self {
         Balanced { slopes: true, ..Self::first(friction, film) }
+    }
+    /// The same over another bed.
+    pub fn over<C>(&self) -> Balanced<F, C>
+    where
+        F: Copy,
+    {
+        let Balanced { film, friction, slopes, .. } = *self;
+        Balanced { film, friction, slopes, bed: PhantomData }
     }
 }
 
@@ -152,9 +162,12 @@ impl<R: Real> Gate<R> {
     const HELD: f64 = 3.0;
 
     #[inline(always)]
-    fn of(void: R::Mask, held: R::Mask) -> Self {
-        let void = R::select(void, R::of(Self::VOID), R::zero());
-        Gate(R::select(held, R::of(Self::HELD), void))
+    fn void(void: R::Mask) -> Self {
+        Gate(R::select(void, R::of(Self::VOID), R::zero()))
+    }
+    #[inline(always)]
+    fn held(self, held: R::Mask) -> Self {
+        Gate(R::select(held, R::of(Self::HELD), self.0))
     }
     #[inline(always)]
     fn and(self, other: Self) -> Self {
@@ -357,6 +370,48 @@ struct Stance<const D: usize, R> {
 }
 
 impl<F: Friction, B: Copy, const LIMITED: bool> Balanced<F, B, LIMITED> {
+    /// Acceleration of a cell by the bed, and by thickness where the flux does not carry it, beside what passes its faces.
+    #[inline(always)]
+    fn pull<const D: usize, R: Real>(
+        &self,
+        window: &impl Window<D, R, Flow<D, R>, B>,
+        bed: &B,
+        faces: &[Faces<Flux<D, R>>; D],
+        all_open: bool,
+    ) -> [R; D]
+    where
+        B: Bed<D, R>,
+    {
+        let near = window.cross();
+        let (zero, per) = (R::zero(), near.spacing.per);
+        let (mut lo, mut hi, mut bend) = ([zero; D], [zero; D], [R::of(1.0); D]);
+        let (mut weight_lo, mut weight_hi) = ([zero; D], [zero; D]);
+        unroll!(axis in D => {
+            let rise = if all_open { Self::thick_rise(&near, axis) } else { self.rise(&near, axis) };
+            [lo[axis], hi[axis]] = rise.climb;
+            [weight_lo[axis], weight_hi[axis]] = rise.weight;
+            if !all_open {
+                // The flux carries no pressure where a cell of the face is held, and what mends it goes with it.
+                let (at_lo, at_hi) = (faces[axis].lo.gate.is_held(), faces[axis].hi.gate.is_held());
+                lo[axis] = R::select(at_lo, rise.whole[0], lo[axis]);
+                hi[axis] = R::select(at_hi, rise.whole[1], hi[axis]);
+                weight_lo[axis] = R::select(at_lo, zero, weight_lo[axis]);
+                weight_hi[axis] = R::select(at_hi, zero, weight_hi[axis]);
+                let half = R::of(0.5);
+                bend[axis] = R::select(at_lo, zero, half) + R::select(at_hi, zero, half);
+            }
+        });
+        let mut pull = bed.pull(lo, hi, per);
+        if bed.slide().is_none() {
+            let cross = bed.cross(weight_lo, weight_hi, per);
+            unroll!(k in D => {
+                let change = bed.bend(k, &near.lo[k].ground, &near.hi[k].ground, per[k]);
+                pull[k] = pull[k] + cross[k] + change * near.here.state.h * bend[k];
+            });
+        }
+        pull
+    }
+
     #[inline(always)]
     fn stance<const D: usize, R: Real>(&self, near: &Near<D, R, Flow<D, R>, B>) -> Stance<D, R>
     where
@@ -418,7 +473,7 @@ where
     fn reconstruct(&self, window: &impl Window<D, R, Flow<D, R>, B>, prime: &[Density<R>; D]) -> Self::Edges {
         let near = window.cross();
         let Cell { state, ground } = near.here;
-        let (per, zero) = (near.spacing.per, R::zero());
+        let per = near.spacing.per;
         let u: [R; D] = each!(axis => prime[axis].u);
         let void = self.is_void(state.h, &ground);
         let mut edges = Edges {
@@ -427,25 +482,28 @@ where
             spread: [SpreadOf::<D, R, LIMITED>::none(); D],
             half: [[Half::none(); 2]; D],
             plane: ground.plane(),
-            gate: Gate::of(void, zero.lt(zero)),
+            gate: Gate::void(void),
         };
+        let idle = void | state.is_still();
         let mut closed = void;
-        let still = state.is_still() & !void;
-        if R::any(still) {
-            let stance = self.stance(&near);
-            let bound = stance.holding * R::of(Self::SLACK) + ground.rounding(state.h, largest(per));
-            let mut held = ground.square(stance.pull).le(bound * bound) & still;
-            // A symmetric tower pulls nowhere, yet falls: bound the drop towards each neighbour too.
-            unroll!(axis in D => {
-                let most = bound * near.spacing.size[axis] * ground.stretch(axis);
-                held = held & stance.drop[axis].le(most);
-            });
-            edges.gate = Gate::of(void, held);
-            closed = closed | held;
-        }
-        // A held cell and a void one give nothing.
-        if !R::any(!closed) {
-            return edges;
+        if R::any(idle) {
+            let still = idle & !void;
+            if R::any(still) {
+                let stance = self.stance(&near);
+                let bound = stance.holding * R::of(Self::SLACK) + ground.rounding(state.h, largest(per));
+                let mut held = ground.square(stance.pull).le(bound * bound) & still;
+                // A symmetric tower pulls nowhere, yet falls: bound the drop towards each neighbour too.
+                unroll!(axis in D => {
+                    let most = bound * near.spacing.size[axis] * ground.stretch(axis);
+                    held = held & stance.drop[axis].le(most);
+                });
+                edges.gate = edges.gate.held(held);
+                closed = closed | held;
+            }
+            // A held cell and a void one give nothing.
+            if !R::any(!closed) {
+                return edges;
+            }
         }
         unroll!(axis in D => {
             if LIMITED && self.slopes {
@@ -509,31 +567,31 @@ where
         _corners: &[[(); 2]; 2],
         dt: R,
     ) -> Flow<D, R> {
-        let near = window.cross();
-        let (zero, per) = (R::zero(), near.spacing.per);
-        let (state, bed) = (near.here.state, near.here.ground.exact());
+        let Cell { state, ground } = window.at([0; D]);
+        let (bed, spacing) = (ground.exact(), window.spacing());
+        let (zero, per) = (R::zero(), spacing.per);
         let Flow { h, q } = state;
-        let (mut gone, mut lost, mut gates) = (zero, [zero; D], zero);
-        unroll!(axis in D => {
-            let Faces { lo, hi } = &faces[axis];
-            let lambda = dt * per[axis];
-            gone = gone + lambda * (hi.mass - lo.mass);
-            gates = gates + (lo.gate.0 + hi.gate.0);
-            unroll!(k in D => {
-                lost[k] = lost[k] + lambda * (hi.left[k] - lo.right[k]);
-            });
+        let lambda: [R; D] = each!(axis => dt * per[axis]);
+        let gone: [R; D] = each!(axis => lambda[axis] * (faces[axis].hi.mass - faces[axis].lo.mass));
+        let gone = total(gone);
+        let lost: [R; D] = each!(k => {
+            let lost: [R; D] = each!(axis => lambda[axis] * (faces[axis].hi.left[k] - faces[axis].lo.right[k]));
+            total(lost)
         });
-        let all_open = !R::any(!gates.same(zero));
-        let mut idle = zero.lt(zero);
+        let gates: [R; D] = each!(axis => faces[axis].lo.gate.0 + faces[axis].hi.gate.0);
+        let open = total(gates).same(zero);
+        let all_open = !R::any(!open);
+        let mut idle = None;
         if !all_open {
             // What holds itself or is bare, and is not touched, stays: leave out the work.
-            idle = !edges.gate.is_open() & gone.same(zero);
+            let mut stays = !edges.gate.is_open() & gone.same(zero);
             unroll!(k in D => {
-                idle = idle & lost[k].same(zero) & q[k].same(zero);
+                stays = stays & lost[k].same(zero) & q[k].same(zero);
             });
-            if !R::any(!idle) {
+            if !R::any(!stays) {
                 return state;
             }
+            idle = Some(stays);
         }
         // One difference of symmetric sums: the axes can be exchanged to the last bit.
         let new = normal(h - gone);
@@ -541,31 +599,13 @@ where
         // The depth under the source: the new one keeps draining cells bounded; at second order the old one
         // keeps the map a forward-Euler step wherever the depth does not halve.
         let depth = if LIMITED && self.slopes { h.min(new + new) } else { new }.positive();
-        let (mut lo, mut hi, mut bend) = ([zero; D], [zero; D], [R::of(1.0); D]);
-        let (mut weight_lo, mut weight_hi) = ([zero; D], [zero; D]);
-        unroll!(axis in D => {
-            let rise = if all_open { Self::thick_rise(&near, axis) } else { self.rise(&near, axis) };
-            [lo[axis], hi[axis]] = rise.climb;
-            [weight_lo[axis], weight_hi[axis]] = rise.weight;
-            if !all_open {
-                // The flux carries no pressure where a cell of the face is held, and what mends it goes with it.
-                let (at_lo, at_hi) = (faces[axis].lo.gate.is_held(), faces[axis].hi.gate.is_held());
-                lo[axis] = R::select(at_lo, rise.whole[0], lo[axis]);
-                hi[axis] = R::select(at_hi, rise.whole[1], hi[axis]);
-                weight_lo[axis] = R::select(at_lo, zero, weight_lo[axis]);
-                weight_hi[axis] = R::select(at_hi, zero, weight_hi[axis]);
-                let half = R::of(0.5);
-                bend[axis] = R::select(at_lo, zero, half) + R::select(at_hi, zero, half);
+        let pull = match bed.slide() {
+            Some(slide) if all_open => slide,
+            slide => {
+                let pull = self.pull(window, &bed, faces, all_open);
+                slide.map_or(pull, |slide| each!(k => R::select(open, slide[k], pull[k])))
             }
-        });
-        let mut pull = bed.pull(lo, hi, per);
-        if B::BENT {
-            let cross = bed.cross(weight_lo, weight_hi, per);
-            unroll!(k in D => {
-                let change = bed.bend(k, &near.lo[k].ground, &near.hi[k].ground, per[k]);
-                pull[k] = pull[k] + cross[k] + change * h * bend[k];
-            });
-        }
+        };
         unroll!(k in D => {
             moved[k] = moved[k] + dt * depth * pull[k];
         });
@@ -584,11 +624,11 @@ where
         let loss = dt * depth * dry;
         let left = size - loss;
         // Slower than before, and within a step not by the last place of its depth: it has stopped.
-        let mut spent = (left * dt * largest(per)).le(R::of(1e-15) * new);
+        let mut spent = (left * largest(lambda)).le(R::of(1e-15) * new);
         if R::any(spent) {
             spent = spent & left.le(square.sqrt() * h);
         }
-        let stops = left.le(zero) | spent | new.lt(R::of(self.film)) | new.le(zero);
+        let stops = left.le(zero) | spent | new.lt(R::of(self.film));
         let mut keep = left / R::select(stops, R::of(1.0), size);
         if R::any(!law.drag.same(zero)) {
             // v + dt drag v^2 = left/h, solved for v: the part that grows with the square, implicitly.
@@ -607,10 +647,12 @@ where
                 slowed[k] = R::select(far, moved[k] - share * old[k], slowed[k]);
             });
         }
-        if all_open {
-            return Flow { h: new, q: slowed };
+        match idle {
+            None => Flow { h: new, q: slowed },
+            Some(idle) => {
+                Flow { h: R::select(idle, h, new), q: each!(k => R::select(idle, q[k], slowed[k])) }
+            }
         }
-        Flow { h: R::select(idle, h, new), q: each!(k => R::select(idle, q[k], slowed[k])) }
     }
 
     fn mirror(&self, axis: usize, state: &Flow<D, R>) -> Flow<D, R> {
@@ -623,7 +665,7 @@ where
     #[inline(always)]
     fn rate(&self, here: &Cell<Flow<D, R>, B>, spacing: &Spacing<D, R>) -> R {
         let rate = here.state.rate(&here.ground, spacing.per);
-        R::select(self.is_void(here.state.h, &here.ground), R::zero(), rate)
+        R::select(here.state.h.lt(R::of(self.film)), R::zero(), rate)
     }
     /// A cell whose last stage ended at rest is at rest; its depth is the average.
     #[inline(always)]

@@ -57,7 +57,6 @@ pub struct Density<R> {
     /// a = clamp(-u/c): the place of xi = 0 in it.
     a: R,
 }
-parts!([R: Real] Density<R> { u: R, c: R, a: R } masks {});
 
 impl<R: Real> Density<R> {
     /// Of depth `h` and momentum `q` along the axis, pressure coefficient `beta`: u = q/h and a by one division,

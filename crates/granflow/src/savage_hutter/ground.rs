@@ -22,8 +22,6 @@ pub trait Bed<const D: usize, R: Real>: Parts<R> {
     type On<L: Real>: Bed<D, L>;
     /// What a face must know of the bed to turn a velocity into it.
     type Plane: Parts<R>;
-    /// Is it more than a plane, so that [`Bed::cross`] or [`Bed::bend`] are not 0?
-    const BENT: bool;
     /// The same bed with what follows from its slope as that is: rest is not decided in single precision.
     fn exact(self) -> Self;
     /// See [`Bed::turn`].
@@ -41,6 +39,9 @@ pub trait Bed<const D: usize, R: Real>: Parts<R> {
     fn weight(&self, there: &Self, h: R, h_there: R) -> R;
     /// Acceleration -M (hi - lo)/(2 dx) of the rises towards both neighbours of each axis.
     fn pull(&self, lo: [R; D], hi: [R; D], per: [R; D]) -> [R; D];
+    /// What is left of the pull where the fluxes carry all pressure, if that is the same whatever lies around; then
+    /// [`Bed::cross`] and [`Bed::bend`] are 0.
+    fn slide(&self) -> Option<[R; D]>;
     /// The part of [`Bed::pull`] that a pressure along the other axes makes (off the diagonal of M).
     fn cross(&self, lo: [R; D], hi: [R; D], per: [R; D]) -> [R; D];
     /// Acceleration per depth that the change of beta and of the bed's tilt between the neighbours along `axis` leaves beside
@@ -118,7 +119,6 @@ unsafe impl<const D: usize, R: Real> Parts<R> for Chute<D, R> {
 impl<const D: usize, R: Real> Bed<D, R> for Chute<D, R> {
     type On<L: Real> = Chute<D, L>;
     type Plane = ();
-    const BENT: bool = false;
     #[inline(always)]
     fn exact(self) -> Self {
         self
@@ -144,6 +144,10 @@ impl<const D: usize, R: Real> Bed<D, R> for Chute<D, R> {
     #[inline(always)]
     fn pull(&self, lo: [R; D], hi: [R; D], per: [R; D]) -> [R; D] {
         straight(lo, hi, per)
+    }
+    #[inline(always)]
+    fn slide(&self) -> Option<[R; D]> {
+        Some(self.tilt)
     }
     #[inline(always)]
     fn cross(&self, _lo: [R; D], _hi: [R; D], _per: [R; D]) -> [R; D] {
@@ -338,7 +342,6 @@ fn stretch<R: Real>(t: R) -> R {
 impl<const D: usize, R: Real> Bed<D, R> for Terrain<D, R> {
     type On<L: Real> = Terrain<D, L>;
     type Plane = Tangent<D, R>;
-    const BENT: bool = true;
     #[inline(always)]
     fn exact(self) -> Self {
         // One step of Newton's: 6e-8 become 5e-15.
@@ -365,6 +368,10 @@ impl<const D: usize, R: Real> Bed<D, R> for Terrain<D, R> {
     #[inline(always)]
     fn pull(&self, lo: [R; D], hi: [R; D], per: [R; D]) -> [R; D] {
         self.metric(straight(lo, hi, per))
+    }
+    #[inline(always)]
+    fn slide(&self) -> Option<[R; D]> {
+        None
     }
     #[inline(always)]
     fn cross(&self, lo: [R; D], hi: [R; D], per: [R; D]) -> [R; D] {

@@ -2,11 +2,12 @@
 #![allow(dead_code)]
 
 use granflow::grid::Grid;
+use granflow::kernels::Kernel;
 use granflow::savage_hutter::Flow;
 use granflow::savage_hutter::balanced::Balanced;
-use granflow::savage_hutter::friction::Coulomb;
+use granflow::savage_hutter::friction::{Coulomb, Law};
 use granflow::savage_hutter::ground::{Bed, Chute, Terrain};
-use granflow::scheme::{Boundary, Scheme};
+use granflow::scheme::Boundary;
 use granflow::simulation::{Simulation, StepSize};
 use granflow::time::{EULER, SSP_RK2, Stages};
 
@@ -14,7 +15,7 @@ use granflow::time::{EULER, SSP_RK2, Stages};
 pub const GRAVITY: f64 = 9.81;
 
 /// A run of the default scheme on the bed `B`.
-pub type Run<const D: usize, B> = Simulation<D, Balanced<Coulomb, B>>;
+pub type Run<const D: usize, B> = Simulation<D, Balanced<Law, B>>;
 
 /// The two orders of the default scheme.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -28,10 +29,10 @@ pub enum Order {
 pub const ORDERS: [Order; 2] = [Order::First, Order::Second];
 
 impl Order {
-    pub fn scheme<B>(self, mu: f64, film: f64) -> Balanced<Coulomb, B> {
+    pub fn scheme<B>(self, mu: f64, film: f64) -> Balanced<Law, B> {
         match self {
-            Order::First => Balanced::first(Coulomb { mu }, film),
-            Order::Second => Balanced::second(Coulomb { mu }, film),
+            Order::First => Balanced::first(Law::Coulomb(Coulomb { mu }), film),
+            Order::Second => Balanced::second(Law::Coulomb(Coulomb { mu }), film),
         }
     }
     pub fn stages(self) -> Stages {
@@ -136,33 +137,33 @@ pub fn on_plane<const D: usize>(
 }
 
 /// Steps without a last time.
-pub fn steps<const D: usize, S: Scheme<D, f64>>(run: &mut Simulation<D, S>, count: usize) {
+pub fn steps<const D: usize, S: Kernel<D>>(run: &mut Simulation<D, S>, count: usize) {
     for _ in 0..count {
         run.advance(f64::INFINITY).expect("the step is finite");
     }
 }
 
 /// Steps up to the time `end`.
-pub fn until<const D: usize, S: Scheme<D, f64>>(run: &mut Simulation<D, S>, end: f64) {
+pub fn until<const D: usize, S: Kernel<D>>(run: &mut Simulation<D, S>, end: f64) {
     while run.time() < end {
         run.advance(end).expect("the state is finite");
     }
 }
 
 /// All states, x fastest.
-pub fn states<const D: usize, S: Scheme<D, f64, State = Flow<D, f64>>>(
+pub fn states<const D: usize, S: Kernel<D, State = Flow<D, f64>>>(
     run: &Simulation<D, S>,
 ) -> Vec<Flow<D, f64>> {
     run.collect(|cell| cell.state)
 }
 
 /// All depths, x fastest.
-pub fn depths<const D: usize, S: Scheme<D, f64, State = Flow<D, f64>>>(run: &Simulation<D, S>) -> Vec<f64> {
+pub fn depths<const D: usize, S: Kernel<D, State = Flow<D, f64>>>(run: &Simulation<D, S>) -> Vec<f64> {
     run.collect(|cell| cell.state.h)
 }
 
 /// Relative error of the ledger: volume now and booked as gone, against the volume at the start.
-pub fn lost<const D: usize, S: Scheme<D, f64>>(run: &Simulation<D, S>, before: f64) -> f64 {
+pub fn lost<const D: usize, S: Kernel<D>>(run: &Simulation<D, S>, before: f64) -> f64 {
     (run.totals().volume + run.out().iter().sum::<f64>() - before) / before
 }
 

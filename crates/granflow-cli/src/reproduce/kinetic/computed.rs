@@ -2,11 +2,11 @@
 
 use granflow::case::Case;
 use granflow::hadeler_kuttler::scheme::HadelerKuttler;
+use granflow::kernels::Kernel;
 use granflow::results::Plane;
 use granflow::savage_hutter::Flow;
 use granflow::savage_hutter::exact::Riemann;
 use granflow::savage_hutter::ground::Bed;
-use granflow::scheme::Scheme;
 use granflow::setup::{Sand, Scene, Visit};
 use granflow::simulation::Simulation;
 
@@ -211,7 +211,7 @@ impl Visit for Collect {
 
     fn visit<const D: usize, S>(self, _plane: Plane, mut simulation: Simulation<D, S>) -> Computed
     where
-        S: Scheme<D, f64, State = Flow<D, f64>>,
+        S: Kernel<D, State = Flow<D, f64>>,
         S::Ground: Bed<D, f64>,
     {
         let grid = *simulation.grid();
