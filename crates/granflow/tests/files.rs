@@ -173,8 +173,11 @@ fn a_full_disk_ends_the_run_and_nothing_complete_is_lost() {
     let mut last = 0;
     let failed = begin(&case, &parts, true, &mut |status| {
         if status.step == half {
-            fs::rename(&ledger, &aside).unwrap();
-            std::os::unix::fs::symlink("/dev/full", &ledger).unwrap();
+            // In one go, for the writer may open it at any instant.
+            let full = parts.join("full");
+            fs::hard_link(&ledger, &aside).unwrap();
+            std::os::unix::fs::symlink("/dev/full", &full).unwrap();
+            fs::rename(&full, &ledger).unwrap();
         } else if status.step > half {
             // These steps take microseconds: leave the thread that writes the time to come upon it.
             std::thread::sleep(Duration::from_millis(100));
