@@ -51,7 +51,7 @@ impl Visit for Look {
     type Output = Start;
     fn visit<const D: usize, S>(self, _plane: Plane, mut simulation: Simulation<D, S>) -> Start
     where
-        S: Kernel<D, State = Flow<D, f64>>,
+        S: granflow::run::model::Model<D> + Kernel<D, State = Flow<D, f64>>,
         S::Ground: Bed<D, f64>,
     {
         Start::of(&mut simulation, true)

@@ -4,7 +4,7 @@ use std::path::Path;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
 use granflow::case::nearest;
-use granflow::output::figures::FigureError;
+use granflow::output::figures::PictureError;
 use granflow::output::report::{self, Figure, Section, Table};
 use granflow::output::tables::{self, Row};
 
@@ -17,7 +17,7 @@ mod sandpiles;
 const INDEPENDENT: &str = "independent run of the printed scheme";
 
 /// Draws a picture into a file.
-type Draw<'a> = Box<dyn Fn(&Path) -> Result<(), FigureError> + Sync + 'a>;
+type Draw<'a> = Box<dyn Fn(&Path) -> Result<(), PictureError> + Sync + 'a>;
 
 /// A picture still to be drawn.
 struct Picture<'a> {
@@ -65,7 +65,7 @@ pub fn reproduce(paper: Option<&str>, out: &Path) -> Result<(), Failure> {
     let drawn = pictures.len();
     parallel(drawn, |k| (pictures[k].draw)(&pictures[k].figure.path))
         .into_iter()
-        .collect::<Result<(), FigureError>>()
+        .collect::<Result<(), PictureError>>()
         .map_err(|error| Failure::File(error.to_string()))?;
     let written = |result: Result<(), granflow::output::Error>| {
         result.map_err(|error| Failure::File(error.to_string()))

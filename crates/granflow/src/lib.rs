@@ -53,29 +53,20 @@
 //! The pages under `docs/` of the repository hold the equations, the schemes, the errata of the papers, the case file
 //! and the output files; `ARCHITECTURE.md` and `CONTRIBUTING.md` say how it is built and how to extend it.
 
-mod backend;
-mod boundary;
-pub mod case;
-mod field;
-pub mod grid;
-pub mod hadeler_kuttler;
-pub mod kernels;
-mod lanes;
-pub mod limiter;
-mod observe;
+pub use granflow_case as case;
+pub use granflow_engine::{grid, kernels, simulation};
+pub use granflow_geo::{raster, release, terrain};
+pub use granflow_model::{hadeler_kuttler, limiter, real, savage_hutter, scheme, time};
+
 pub mod output;
-pub mod raster;
-pub mod real;
-pub mod release;
+
 pub mod results;
 pub mod run;
-pub mod savage_hutter;
-pub mod scheme;
+
 pub mod setup;
-pub mod simulation;
+pub mod site;
+
 pub mod speed;
-pub mod terrain;
-pub mod time;
 
 /// The README's library example is a test.
 #[cfg(doctest)]

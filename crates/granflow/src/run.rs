@@ -1,7 +1,7 @@
 //! A run from its case to its end: steps, books, frames, checkpoints, and why it stopped.
 
 mod ending;
-mod model;
+pub mod model;
 mod saved;
 mod series;
 mod writer;
@@ -129,7 +129,7 @@ impl Visit for Work<'_> {
 
     fn visit<const D: usize, S>(self, plane: Plane, simulation: Simulation<D, S>) -> Self::Output
     where
-        S: Kernel<D, State = Flow<D, f64>>,
+        S: Model<D> + Kernel<D, State = Flow<D, f64>>,
         S::Ground: Bed<D, f64>,
     {
         Run::start(self, simulation, plane, None)?.go()

@@ -3,7 +3,7 @@
 mod mountain;
 mod sand;
 
-pub use mountain::Mountain;
+pub use mountain::{Mountain, ground_at};
 pub use sand::Sand;
 
 use crate::case::{self, Case, CaseError, Model, SchemeName, Stepping};
@@ -77,7 +77,7 @@ pub trait Visit {
     /// Do it, where the cells lie on `plane`.
     fn visit<const D: usize, S>(self, plane: Plane, simulation: Simulation<D, S>) -> Self::Output
     where
-        S: Kernel<D, State = Flow<D, f64>>,
+        S: crate::run::model::Model<D> + Kernel<D, State = Flow<D, f64>>,
         S::Ground: Bed<D, f64>;
     /// Do it for a growing sandpile.
     fn visit_sand<const D: usize>(

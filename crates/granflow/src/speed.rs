@@ -10,9 +10,9 @@ pub use measure::{SpeedError, Spell, median, spells};
 pub use setups::{Extent, SETUPS, Setup};
 pub use triad::Triad;
 
-use crate::field::Field;
 use crate::kernels::Kernel;
 use crate::simulation::{Failure, Instructions, Simulation, Traffic};
+use granflow_engine::Field;
 
 /// A run to be measured, of whatever scheme.
 pub trait Load: Send {

@@ -3,7 +3,6 @@
 mod support;
 
 use granflow::hadeler_kuttler::scheme::{ADAPTIVE, FIRST_ORDER, SECOND_ORDER};
-use granflow::hadeler_kuttler::site::Site;
 use granflow::hadeler_kuttler::table::Table;
 use granflow::kernels::Kernel;
 use granflow::savage_hutter::Flow;
@@ -15,6 +14,7 @@ use granflow::savage_hutter::kinetic::{
 };
 use granflow::scheme::{Boundary, Cell, Faces, Parts, Spacing, Window};
 use granflow::simulation::{Failure, Instructions, Simulation, StepSize};
+use granflow::site::Site;
 use granflow::time::{EULER, SSP_RK2, Stages};
 use proptest::prelude::*;
 use support::{Dice, ORDERS, Order, Surface, alone, grid, lost, plane, run, states, steps, terrain};

@@ -1,147 +1,37 @@
-//! The figures: every picture of a run or a paper, drawn to PNG without any help of the system.
-//!
-//! Each kind is a struct of plain slices and texts that implements [`Figure`]: [`Profiles`], [`HeatMap`] (a field over a
-//! plane or over space and time), [`Surface`], [`Map`], [`Section`], [`History`], [`Convergence`]. The typeface is compiled
-//! in, so the same data give the same bytes on every machine.
-//!
-//! ```
-//! use granflow::output::figures::{Axis, Curve, Figure, Profiles, Style};
-//! let x = [0.0, 1.0, 2.0];
-//! let figure = Profiles {
-//!     title: "A slope",
-//!     x: Axis::new("x", "m"),
-//!     y: Axis::new("thickness", "m"),
-//!     curves: &[Curve { name: "h", x: &x, y: &[2.0, 1.0, 0.0], style: Style::Solid, colour: None }],
-//!     ..Default::default()
-//! };
-//! let picture = figure.draw()?;
-//! assert_eq!((picture.width, picture.height), (1600, 1000));
-//! # Ok::<(), granflow::output::figures::FigureError>(())
-//! ```
+//! Figures as PNG files; the kinds of figures are those of [`granflow_figures`].
 
-mod axes;
-mod canvas;
-mod colour_bar;
-mod colours;
-mod contours;
-mod convergence;
-mod curves;
-mod depth;
-mod heat;
-mod history;
-mod lattice;
-mod legend;
-mod map;
-mod perspective;
-mod relief;
-mod scale_bar;
-mod section;
-mod surface;
-mod ticks;
-mod typeface;
-mod view;
-
-use std::io;
+use super::{Error, whole_file};
+pub use granflow_figures::*;
 use std::path::Path;
 
-pub use axes::Axis;
-pub use colours::{Colours, Rgb, line_colour};
-pub use convergence::{Convergence, ErrorSeries};
-pub use curves::{Curve, Fill, Profiles, Style};
-pub use heat::{Frame, HeatMap, Levels, Outline};
-pub use history::{History, HistoryPanel};
-pub use map::{Map, Overlay};
-pub use relief::Relief;
-pub use section::Section;
-pub use surface::{Paint, Surface};
-pub use ticks::{round_length, short};
-pub use view::Extent;
-
-/// Why a figure could not be drawn or written.
+/// Why the file of a figure could not be made.
 #[derive(Debug, thiserror::Error)]
-pub enum FigureError {
-    /// Two slices that belong together differ in length.
-    #[error("figure `{figure}`: {what} has {found} values where {expected} are needed")]
-    Shape {
-        /// The title of the figure.
-        figure: String,
-        /// The slice, in words.
-        what: String,
-        /// Its length.
-        found: usize,
-        /// The length that fits the others.
-        expected: usize,
-    },
-    /// There is no finite number to draw, or fewer points than the kind of figure needs.
-    #[error("figure `{figure}`: {what}; nothing can be drawn")]
-    Empty {
-        /// The title of the figure.
-        figure: String,
-        /// What is missing.
-        what: String,
-    },
-    /// The PNG could not be written.
+pub enum PictureError {
+    /// It could not be drawn.
     #[error(transparent)]
-    File(#[from] super::Error),
+    Figure(#[from] FigureError),
+    /// It could not be written.
+    #[error(transparent)]
+    File(#[from] Error),
 }
 
-impl FigureError {
-    fn empty(figure: &str, what: impl Into<String>) -> Self {
-        Self::Empty { figure: figure.into(), what: what.into() }
-    }
-
-    /// Refuses a slice of another length than its partners.
-    fn same_length(figure: &str, what: &str, found: usize, expected: usize) -> Result<(), Self> {
-        if found == expected {
-            return Ok(());
-        }
-        Err(Self::Shape { figure: figure.into(), what: what.into(), found, expected })
-    }
+/// Writes a picture as a PNG; under `path` stands the old file or the whole new one at every instant.
+///
+/// # Errors
+/// [`Error`] naming the path.
+pub fn save(picture: &Picture, path: &Path) -> Result<(), Error> {
+    whole_file(path, |out| picture.write_png(out))
 }
 
-/// A drawn figure: opaque RGB pixels, row by row from the top left.
-#[derive(Debug, Clone, PartialEq, Eq)]
-pub struct Picture {
-    /// Pixels per row.
-    pub width: u32,
-    /// Rows.
-    pub height: u32,
-    /// `3 * width * height` bytes: red, green, blue of each pixel.
-    pub rgb: Vec<u8>,
-}
-
-impl Picture {
-    /// Writes the picture as a PNG; under `path` stands the old file or the whole new one at every instant.
+/// Figures that can be drawn into a file.
+pub trait Save: Figure {
+    /// Draws the figure and writes it as a PNG (see [`save`]).
     ///
     /// # Errors
-    /// [`FigureError::File`] naming the path.
-    pub fn save(&self, path: &Path) -> Result<(), FigureError> {
-        super::whole_file(path, |out| {
-            let mut encoder = png::Encoder::new(out, self.width, self.height);
-            encoder.set_color(png::ColorType::Rgb);
-            encoder.set_depth(png::BitDepth::Eight);
-            encoder.set_compression(png::Compression::Fast);
-            let mut writer = encoder.write_header().map_err(io::Error::other)?;
-            writer.write_image_data(&self.rgb).map_err(io::Error::other)?;
-            writer.finish().map_err(io::Error::other)
-        })?;
-        Ok(())
+    /// [`PictureError`].
+    fn save(&self, path: &Path) -> Result<(), PictureError> {
+        Ok(save(&self.draw()?, path)?)
     }
 }
 
-/// What every kind of figure can do.
-pub trait Figure {
-    /// Draws the figure.
-    ///
-    /// # Errors
-    /// [`FigureError::Shape`] for slices that do not fit together, [`FigureError::Empty`] where nothing finite is given.
-    fn draw(&self) -> Result<Picture, FigureError>;
-
-    /// Draws the figure and writes it as a PNG (see [`Picture::save`]).
-    ///
-    /// # Errors
-    /// Those of [`Figure::draw`] and [`Picture::save`].
-    fn save(&self, path: &Path) -> Result<(), FigureError> {
-        self.draw()?.save(path)
-    }
-}
+impl<F: Figure + ?Sized> Save for F {}

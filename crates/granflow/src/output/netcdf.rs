@@ -322,17 +322,10 @@ impl Maps {
 
 impl Crs {
     /// The attributes that CF (`crs_wkt`), GDAL and rioxarray (`spatial_ref`) look for; GDAL wants well-known text there, so
-    /// a bare EPSG code is looked up. The shift to WGS 84 that such texts carry belongs to a transformation, not to the system:
-    /// with it readers would take the system for another than the EPSG's.
+    /// a bare EPSG code is looked up.
     fn describe(&self, file: &mut NcFileBuilder, id: VariableId) -> netcdf_writer::Result<()> {
         let code = self.epsg.map(|code| format!("EPSG:{code}"));
-        let known = self.epsg.and_then(|code| u16::try_from(code).ok()).and_then(crs_definitions::from_code);
-        let known = known.map(|known| match known.wkt.split_once(",TOWGS84[") {
-            Some((before, shift)) => {
-                format!("{before}{}", shift.split_once(']').map_or("", |(_, after)| after))
-            }
-            None => known.wkt.into(),
-        });
+        let known = self.epsg.and_then(crate::raster::well_known_text);
         let wkt = self.wkt.as_deref().or(known.as_deref());
         let names = [
             ("long_name", Some("coordinate reference system")),

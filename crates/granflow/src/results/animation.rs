@@ -47,7 +47,7 @@ pub(super) fn write(run: &Finished, story: &Story) -> Result<PathBuf, FilesError
     let Some(&start) = shown.first() else { return Ok(path) };
     let fields = read(start)?;
     scene.relief = scene.mountain(&fields);
-    let first = scene.draw(times[start], &fields)?;
+    let first = scene.draw(times[start], &fields).map_err(output::figures::PictureError::from)?;
     let mut failure = None;
     let written = whole_file(&path, |out| {
         let mut encoder = png::Encoder::new(out, first.width, first.height);
@@ -82,7 +82,7 @@ pub(super) fn write(run: &Finished, story: &Story) -> Result<PathBuf, FilesError
         writer.finish().map_err(io::Error::other)
     });
     match (written, failure) {
-        (_, Some(error)) => Err(error.into()),
+        (_, Some(error)) => Err(output::figures::PictureError::from(error).into()),
         (written, None) => {
             written?;
             Ok(path)

@@ -1,6 +1,6 @@
 //! A figure that is still to be drawn: its name, its caption, and how.
 
-use crate::output::figures::{FigureError, Picture};
+use crate::output::figures::{FigureError, Picture, PictureError, save};
 use crate::output::report;
 use rayon::prelude::*;
 use std::fmt;
@@ -34,18 +34,20 @@ impl<'a> Drawing<'a> {
 }
 
 /// Draw all on all cores into `folder`, in their order; a figure of nothing finite is left out.
-pub(super) fn save_all(drawings: &[Drawing], folder: &Path) -> Result<Vec<report::Figure>, FigureError> {
-    let save = |drawing: &Drawing| match (drawing.draw)() {
-        Err(FigureError::Empty { .. }) => Ok(None),
-        Err(error) => Err(error),
-        Ok(picture) => {
-            let path = folder.join(format!("{}.png", drawing.name));
-            picture.save(&path)?;
-            let mut name = drawing.name.replace('_', " ");
-            name[..1].make_ascii_uppercase();
-            Ok(Some(report::Figure { name, caption: drawing.caption.clone(), path }))
+pub(super) fn save_all(drawings: &[Drawing], folder: &Path) -> Result<Vec<report::Figure>, PictureError> {
+    let draw = |drawing: &Drawing| -> Result<_, PictureError> {
+        match (drawing.draw)() {
+            Err(FigureError::Empty { .. }) => Ok(None),
+            Err(error) => Err(error.into()),
+            Ok(picture) => {
+                let path = folder.join(format!("{}.png", drawing.name));
+                save(&picture, &path)?;
+                let mut name = drawing.name.replace('_', " ");
+                name[..1].make_ascii_uppercase();
+                Ok(Some(report::Figure { name, caption: drawing.caption.clone(), path }))
+            }
         }
     };
-    let figures: Vec<Option<report::Figure>> = drawings.par_iter().map(save).collect::<Result<_, _>>()?;
+    let figures: Vec<Option<report::Figure>> = drawings.par_iter().map(draw).collect::<Result<_, _>>()?;
     Ok(figures.into_iter().flatten().collect())
 }

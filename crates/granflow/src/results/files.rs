@@ -5,7 +5,7 @@ use super::{
     Finished, Under, animation, chute_figures, drawing, mountain_figures, outlines, rasters, table_figures,
 };
 use crate::case::FileKind;
-use crate::output::figures::FigureError;
+use crate::output::figures::PictureError;
 use crate::output::report::{self, Report};
 use crate::output::summary::StopReason;
 use crate::output::{self, csv, vtk};
@@ -23,7 +23,7 @@ pub enum FilesError {
     Output(#[from] output::Error),
     /// A figure could not be drawn or written.
     #[error(transparent)]
-    Figure(#[from] FigureError),
+    Figure(#[from] PictureError),
     /// A raster could not be written.
     #[error(transparent)]
     Raster(#[from] RasterError),

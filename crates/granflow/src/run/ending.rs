@@ -4,11 +4,11 @@ use super::model::{Maps, Model};
 use super::writer::Writer;
 use super::{Run, relative};
 use crate::case::{self, Case};
-use crate::observe;
 use crate::output::frames::Frames;
 use crate::output::ledger::{Entry, sum};
 use crate::output::summary::{StopReason, Summary};
 use crate::results::{Finished, Plane};
+use granflow_engine::Maps as Summaries;
 use std::path::PathBuf;
 
 /// A finished run but for its series and its ledger, which the writer has.
@@ -34,7 +34,7 @@ impl<const D: usize, S: Model<D>> Run<'_, '_, D, S> {
     pub(super) fn ending(&mut self, stop_reason: StopReason) -> Ending {
         let end = S::maps(&mut self.simulation, self.sand);
         let (simulation, layout) = (&self.simulation, self.simulation.layout());
-        let kept = simulation.maps.as_ref().into_iter().flat_map(observe::Maps::named);
+        let kept = simulation.maps.as_ref().into_iter().flat_map(Summaries::named);
         let maps = kept.map(|(name, map)| (name, layout.unpadded(map))).chain(end).collect();
         Ending {
             case: self.work.case.clone(),

@@ -6,16 +6,19 @@ use crate::kernels::Kernel;
 use crate::output::summary::Summary;
 use crate::results::Plane;
 use crate::savage_hutter::Flow;
-use crate::savage_hutter::ground::Bed;
+use crate::savage_hutter::balanced::Balanced;
+use crate::savage_hutter::friction::Law;
+use crate::savage_hutter::ground::{Bed, Chute, Terrain};
+use crate::savage_hutter::kinetic::Kinetic;
 use crate::scheme::Cell;
 use crate::setup::Sand;
 use crate::simulation::Simulation;
 
 /// Maps by name, x fastest.
-pub(super) type Maps = Vec<(&'static str, Vec<f64>)>;
+pub type Maps = Vec<(&'static str, Vec<f64>)>;
 
 /// A model as a run sees it.
-pub(super) trait Model<const D: usize>: Kernel<D> + Sized {
+pub trait Model<const D: usize>: Kernel<D> + Sized {
     /// Are peaks and times of every cell kept?
     const PEAKS: bool;
 
@@ -33,14 +36,12 @@ pub(super) trait Model<const D: usize>: Kernel<D> + Sized {
     fn pour(simulation: &mut Simulation<D, Self>, sand: &Sand<D>, time: f64);
 }
 
-impl<const D: usize, S> Model<D> for S
-where
-    S: Kernel<D, State = Flow<D, f64>>,
-    S::Ground: Bed<D, f64>,
-{
+macro_rules! flows {
+    ($($scheme:ty),*) => {$(
+impl<const D: usize> Model<D> for $scheme {
     const PEAKS: bool = true;
 
-    fn fill(simulation: &Simulation<D, S>, _plane: &Plane, field: usize, from: usize, values: &mut [f64]) {
+    fn fill(simulation: &Simulation<D, Self>, _plane: &Plane, field: usize, from: usize, values: &mut [f64]) {
         let columns = simulation.grid().cells[0];
         match field {
             0 => simulation.fill(columns, from, values, thickness),
@@ -54,21 +55,24 @@ where
             }
         }
     }
-    fn elevation(simulation: &Simulation<D, S>) -> Vec<f64> {
+    fn elevation(simulation: &Simulation<D, Self>) -> Vec<f64> {
         simulation.map(|cell| cell.ground.elevation())
     }
-    fn maps(simulation: &mut Simulation<D, S>, _sand: Option<&Sand<D>>) -> Maps {
+    fn maps(simulation: &mut Simulation<D, Self>, _sand: Option<&Sand<D>>) -> Maps {
         let deposit = simulation.map(thickness);
         vec![("deposit", deposit), ("yield_margin", simulation.margins())]
     }
-    fn sum_up(simulation: &Simulation<D, S>, _sand: Option<&Sand<D>>, summary: &mut Summary) {
+    fn sum_up(simulation: &Simulation<D, Self>, _sand: Option<&Sand<D>>, summary: &mut Summary) {
         let totals = simulation.totals();
         summary.add("kinetic_energy_final", totals.energy);
         summary.add("moving_cells_final", totals.moving as f64);
         summary.add("film_share", if totals.volume == 0.0 { 0.0 } else { totals.film / totals.volume });
     }
-    fn pour(_simulation: &mut Simulation<D, S>, _sand: &Sand<D>, _time: f64) {}
+    fn pour(_simulation: &mut Simulation<D, Self>, _sand: &Sand<D>, _time: f64) {}
 }
+    )*};
+}
+flows!(Kinetic, Balanced<Law, Chute<D, f64>>, Balanced<Law, Terrain<D, f64>>);
 
 impl<const D: usize> Model<D> for HadelerKuttler {
     const PEAKS: bool = false;

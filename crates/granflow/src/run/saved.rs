@@ -3,7 +3,6 @@
 use super::model::Model;
 use super::writer::Writer;
 use super::{Run, RunError, Work};
-use crate::field::Field;
 use crate::kernels::Kernel;
 use crate::output;
 use crate::output::checkpoint::{Checkpoint, Numbers, case_hash};
@@ -12,6 +11,7 @@ use crate::output::ledger::Ledger;
 use crate::results::Plane;
 use crate::setup::Sand;
 use crate::simulation::{CLOCK, Simulation};
+use granflow_engine::Field;
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 

@@ -63,10 +63,20 @@ impl Mountain {
             SchemeName::Balanced2 => (Balanced::second(law, film), SSP_RK2),
             _ => (Balanced::first(law, film), EULER),
         };
-        let ground = move |cell| ground::Terrain::at(&terrain, gravity, cell);
+        let ground = move |cell| ground_at(&terrain, gravity, cell);
         let state = move |[i, j]: [usize; 2]| Flow::still(release.get(j * columns + i));
         work.visit(plane, Simulation::new(scheme, grid, stages, step_size(case), ground, state))
     }
+}
+
+/// The ground of a cell of a mountain under `gravity` \[m/s^2\], by column and row, the first row in the south.
+pub fn ground_at(mountain: &Terrain, gravity: f64, [column, row]: [usize; 2]) -> ground::Terrain<2, f64> {
+    let level = mountain.bed.at(column, row);
+    if level.is_nan() {
+        return ground::Terrain::nothing(gravity);
+    }
+    let fit = mountain.fit([column, row]);
+    ground::Terrain::of(level, fit.gradient, fit.cosine(), fit.hessian, gravity)
 }
 
 /// Hands back to the system what reading has left: the allocator would keep it for more of the same, and none will come.

@@ -4,10 +4,10 @@ use super::SetupError;
 use crate::case::{self, Case, CaseError, Method, SchemeName, Sources, TablePlan};
 use crate::hadeler_kuttler::direct::{Equilibrium, Unsteady};
 use crate::hadeler_kuttler::scheme::{FIRST_ORDER, HadelerKuttler, SECOND_ORDER, Slopes};
-use crate::hadeler_kuttler::site::Site;
 use crate::results::{self, Plane};
 use crate::scheme::Side;
 use crate::simulation::{Simulation, StepSize};
+use crate::site::Site;
 use crate::time::EULER;
 
 /// A table with what is poured on it.

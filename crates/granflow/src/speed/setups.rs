@@ -206,7 +206,7 @@ pub(super) fn on_terrain(second: bool, extent: Extent) -> Begun<2, Balanced<Law,
     };
     let terrain = Terrain::new(bed, Curvature::Length(3.0 * sheet.size[0]));
     let (scheme, stages) = balanced(second);
-    let ground = move |cell| ground::Terrain::at(&terrain, 1.0, cell);
+    let ground = move |cell| crate::setup::ground_at(&terrain, 1.0, cell);
     let start = |index| cap(&sheet, extent, index);
     Begun::new(Simulation::new(scheme, sheet, stages, COURANT, ground, start), extent.all())
 }

@@ -1,10 +1,11 @@
 //! Tables to solve on.
 
+use granflow::grid::Grid;
 use granflow::hadeler_kuttler::Pile;
 use granflow::hadeler_kuttler::direct::{Equilibrium, equilibrium, rays, surface};
 use granflow::hadeler_kuttler::scheme::{FIRST_ORDER, HadelerKuttler};
 use granflow::hadeler_kuttler::table::{Edge, Table};
-use granflow::scheme::Side;
+use granflow::scheme::{Boundary, Side};
 use granflow::simulation::{Simulation, StepSize};
 use granflow::time::EULER;
 
@@ -69,7 +70,19 @@ impl<const D: usize> Setup<D> {
             v: if within(index) { state.v[self.cell(index)] } else { 0.0 },
         };
         let step = StepSize::Courant(0.45);
-        Simulation::new(FIRST_ORDER, self.table.grid([0.0; D], self.size), EULER, step, ground, pile)
+        Simulation::new(
+            FIRST_ORDER,
+            Grid {
+                cells: self.table.nodes(),
+                origin: [0.0; D],
+                size: self.size,
+                boundary: [[Boundary::Nothing; 2]; D],
+            },
+            EULER,
+            step,
+            ground,
+            pile,
+        )
     }
     /// Largest change of u and of v in one step.
     pub fn one_step(&self) -> [f64; 2] {

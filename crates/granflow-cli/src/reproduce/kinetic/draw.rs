@@ -1,7 +1,7 @@
 //! The pictures: what a paper prints, drawn from our runs; all quantities in the papers' scaling.
 
 use granflow::output::figures::{
-    Axis, Colours, Curve, Figure, FigureError, Frame as Axes, HeatMap, Profiles, Style, Surface, line_colour,
+    Axis, Colours, Curve, Frame as Axes, HeatMap, PictureError, Profiles, Save, Style, Surface, line_colour,
 };
 use std::path::Path;
 
@@ -58,7 +58,7 @@ impl Drawing {
     }
 
     /// Draws an example to a file.
-    pub fn save(self, example: Id, runs: &Runs, path: &Path) -> Result<(), FigureError> {
+    pub fn save(self, example: Id, runs: &Runs, path: &Path) -> Result<(), PictureError> {
         match self {
             Self::Exact(verfahren, field) => exact(runs.by(example, verfahren), field, path),
             Self::Profiles(field, steps) => profiles(runs.by(example, 5), field, steps, path),
@@ -130,7 +130,7 @@ fn calm<'a>(axis: Axis<'a>, curves: &[Curve]) -> Axis<'a> {
     if high - low < 0.01 { axis.over(low - 0.5, high + 0.5) } else { axis }
 }
 
-fn exact(run: &Computed, field: Field, path: &Path) -> Result<(), FigureError> {
+fn exact(run: &Computed, field: Field, path: &Path) -> Result<(), PictureError> {
     let end = run.end();
     // Ten places a cell: the line shows corners and jumps as sharp as they are.
     let fine: Vec<f64> =
@@ -163,7 +163,7 @@ fn exact(run: &Computed, field: Field, path: &Path) -> Result<(), FigureError> {
     .save(path)
 }
 
-fn profiles(run: &Computed, field: Field, steps: &[u64], path: &Path) -> Result<(), FigureError> {
+fn profiles(run: &Computed, field: Field, steps: &[u64], path: &Path) -> Result<(), PictureError> {
     const STYLES: [Style; 3] = [Style::Solid, Style::Dotted, Style::Dashed];
     let frames: Vec<&Frame> = steps.iter().map(|&step| run.at(step)).collect();
     let names: Vec<String> = frames.iter().map(|frame| format!("step {}", frame.step)).collect();
@@ -188,7 +188,7 @@ fn profiles(run: &Computed, field: Field, steps: &[u64], path: &Path) -> Result<
 }
 
 /// The final heights of an example by all schemes that came to the end.
-pub fn comparison(runs: &[Computed], path: &Path) -> Result<(), FigureError> {
+pub fn comparison(runs: &[Computed], path: &Path) -> Result<(), PictureError> {
     // The full lines lie below the dashed ones: curves that coincide can both be seen.
     let drawn = [5..runs.len(), 0..5].into_iter().flatten().filter(|&k| runs[k].failure.is_none());
     let curves: Vec<Curve> = drawn
@@ -213,7 +213,7 @@ pub fn comparison(runs: &[Computed], path: &Path) -> Result<(), FigureError> {
 }
 
 /// A run that broke off: its height where it first was negative and in its last finite state.
-pub fn failure(run: &Computed, path: &Path) -> Result<(), FigureError> {
+pub fn failure(run: &Computed, path: &Path) -> Result<(), PictureError> {
     let named = |frame: &Frame, what: &str| format!("{what}, step {}", frame.step);
     let negative = run.negative.as_ref().unwrap_or_else(|| run.end());
     let names = [named(negative, "first h < 0"), named(run.end(), "last finite state")];

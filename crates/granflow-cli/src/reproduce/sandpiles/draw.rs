@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use granflow::output::figures::{
-    Axis, Colours, Curve, Figure, FigureError, History as Panels, HistoryPanel, Paint, Profiles, Style,
+    Axis, Colours, Curve, History as Panels, HistoryPanel, Paint, PictureError, Profiles, Save, Style,
     Surface, line_colour,
 };
 
@@ -65,7 +65,7 @@ pub fn schemes(
     runs: &[Layers; 3],
     layer: Layer,
     path: &Path,
-) -> Result<(), FigureError> {
+) -> Result<(), PictureError> {
     let fine = layer.places(line.count());
     let coarse = layer.places(runs[0].count());
     let mut curves = vec![Curve { name, x: &fine, y: layer.of(line), style: Style::Solid, colour: DARK }];
@@ -77,7 +77,7 @@ pub fn schemes(
 }
 
 /// Error against step (Fig. 5): the schemes numbered `drawn`.
-pub fn errors(runs: &line::Runs, drawn: &[usize], layer: Layer, path: &Path) -> Result<(), FigureError> {
+pub fn errors(runs: &line::Runs, drawn: &[usize], layer: Layer, path: &Path) -> Result<(), PictureError> {
     let names = line::history_schemes();
     let of = |k: usize| match layer {
         Layer::Standing => &runs.histories[0][k].u,
@@ -109,7 +109,7 @@ fn end(pile: &Pile) -> String {
 }
 
 /// The pile in perspective, the rolling layer as colour on it.
-pub fn pile(pile: &Pile, path: &Path) -> Result<(), FigureError> {
+pub fn pile(pile: &Pile, path: &Path) -> Result<(), PictureError> {
     let nodes = line::nodes(CELLS);
     let shown = largest_shown(&pile.v);
     Surface {
@@ -141,7 +141,7 @@ pub fn largest_shown(v: &[f64]) -> f64 {
 }
 
 /// Both layers along two lines, the equilibrium as a line.
-pub fn sections(pile: &Pile, path: &Path) -> Result<(), FigureError> {
+pub fn sections(pile: &Pile, path: &Path) -> Result<(), PictureError> {
     let along = |field: &[f64], columns: usize, y: Option<f64>| -> Vec<f64> {
         // A height between two rows of cells belongs to the upper one.
         let row = |k: usize| y.map_or(k, |y| (y * CELLS as f64).round() as usize);

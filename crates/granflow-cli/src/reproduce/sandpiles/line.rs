@@ -2,9 +2,9 @@
 
 use granflow::hadeler_kuttler::exact;
 use granflow::hadeler_kuttler::scheme::{FIRST_ORDER, HadelerKuttler, SECOND_ORDER};
-use granflow::hadeler_kuttler::site::Site;
 use granflow::hadeler_kuttler::table::Table;
 use granflow::simulation::{Simulation, StepSize};
+use granflow::site::Site;
 
 use super::super::parallel;
 use super::{LAMBDA, SCHEMES, SOURCE, adaptive, failed};

@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use granflow::output::figures::FigureError;
+use granflow::output::figures::PictureError;
 use granflow::output::report::{Figure, Table};
 
 mod square;
@@ -27,7 +27,7 @@ fn picture<'a>(
     folder: &Path,
     (file, name): (String, String),
     caption: String,
-    draw: impl Fn(&Path) -> Result<(), FigureError> + Sync + 'a,
+    draw: impl Fn(&Path) -> Result<(), PictureError> + Sync + 'a,
 ) -> Picture<'a> {
     let path: PathBuf = folder.join(file + ".png");
     Picture { figure: Figure { name, caption, path }, draw: Box::new(draw) }

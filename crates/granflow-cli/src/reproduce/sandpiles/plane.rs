@@ -2,11 +2,11 @@
 
 use granflow::hadeler_kuttler::direct::Equilibrium;
 use granflow::hadeler_kuttler::scheme::{FIRST_ORDER, HadelerKuttler};
-use granflow::hadeler_kuttler::site::Site;
 use granflow::hadeler_kuttler::table::{Edge, Table};
 use granflow::hadeler_kuttler::{Pile as State, exact};
 use granflow::scheme::Scheme;
 use granflow::simulation::{Simulation, StepSize};
+use granflow::site::Site;
 
 use super::super::parallel;
 use super::{SCHEMES, SOURCE, failed};

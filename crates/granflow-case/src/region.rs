@@ -1,0 +1,203 @@
+//! Parts of the plane that a case names: boxes, discs, polygons from a file.
+
+use std::path::{Path, PathBuf};
+
+use geo::{BoundingRect, Distance, Euclidean, Intersects, Point, Polygon};
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+use super::fault::PartFault;
+use super::grid::Points;
+use super::initial::Centre;
+use granflow_geo::release;
+
+/// A part of the plane (of the line in one dimension), with its rim.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum Region {
+    /// [x0, x1, y0, y1], or [x0, x1] for all y.
+    Box(Vec<f64>),
+    /// All places within a distance of a centre.
+    Disc(Disc),
+    /// The polygons of a GeoJSON file or shapefile, without their holes, in the case's coordinates.
+    File(PathBuf),
+}
+
+/// A disc (an interval in one dimension).
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Disc {
+    /// Centre: x, or [x, y].
+    #[serde(default)]
+    pub centre: Centre,
+    /// Distance from the centre to the rim.
+    pub radius: f64,
+}
+
+/// A region whose file is read.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) enum Area {
+    Box([f64; 2], [f64; 2]),
+    Disc(Disc),
+    Polygons(Vec<Polygon>),
+}
+
+impl Region {
+    /// The file that the region needs.
+    pub(super) fn needs_file(&self) -> Option<&Path> {
+        match self {
+            Self::File(path) => Some(path),
+            Self::Box(_) | Self::Disc(_) => None,
+        }
+    }
+
+    /// Checks the numbers and reads the file, which is looked for in `folder`; `points` tells one dimension from two.
+    pub(super) fn area(&self, points: &Points, folder: &Path) -> Result<Area, PartFault> {
+        let plane = points.y.is_some();
+        match self {
+            Self::Box(ends) => {
+                let (x, y) = match (ends.as_slice(), plane) {
+                    ([x0, x1], _) => ([*x0, *x1], [f64::NEG_INFINITY, f64::INFINITY]),
+                    ([x0, x1, y0, y1], true) => ([*x0, *x1], [*y0, *y1]),
+                    (_, true) => {
+                        let found = ends.len();
+                        let message = format!(
+                            "found {found} numbers, expected [x0, x1, y0, y1], or [x0, x1] for all y"
+                        );
+                        return Err(PartFault::new("box", message));
+                    }
+                    (_, false) => {
+                        let message =
+                            format!("found {} numbers, expected [x0, x1]: the grid has no y", ends.len());
+                        return Err(PartFault::new("box", message));
+                    }
+                };
+                for [low, high] in [x, y] {
+                    // an edge of the table may be a box without breadth
+                    if low.is_nan() || high.is_nan() || low > high {
+                        let message =
+                            format!("from {low} to {high} is no interval, expected the low end first");
+                        return Err(PartFault::new("box", message));
+                    }
+                }
+                Ok(Area::Box(x, y))
+            }
+            Self::Disc(disc) if disc.radius > 0.0 && disc.radius.is_finite() => {
+                if matches!(disc.centre, Centre::Xy(_)) && !plane {
+                    return Err(PartFault::new("disc.centre", "expected centre = x: the grid has no y"));
+                }
+                Ok(Area::Disc(disc.clone()))
+            }
+            Self::Disc(disc) => {
+                let message = format!("found {}, expected a number > 0", disc.radius);
+                Err(PartFault::new("disc.radius", message))
+            }
+            Self::File(_) if !plane => Err(PartFault::new(
+                "file",
+                "polygons need two dimensions, expected box = [x0, x1]: the grid has no y",
+            )),
+            Self::File(path) => {
+                let polygons = release::outlines(&folder.join(path))
+                    .map_err(|error| PartFault::new("file", error.to_string()).file())?;
+                if polygons.is_empty() {
+                    let message = format!("{} holds no polygon", path.display());
+                    return Err(PartFault::new("file", message).file());
+                }
+                Ok(Area::Polygons(polygons))
+            }
+        }
+    }
+}
+
+impl Area {
+    /// Whether the place lies in the region or, up to `slack`, on its rim.
+    ///
+    /// The slack is rounding's: it lets a box from 0.1 to 0.9 hold both or none of two mirrored places.
+    pub(super) fn holds(&self, [x, y]: [f64; 2], slack: f64) -> bool {
+        let between = |[low, high]: [f64; 2], at: f64| low - slack <= at && at <= high + slack;
+        match self {
+            Self::Box(xs, ys) => between(*xs, x) && between(*ys, y),
+            Self::Disc(disc) => disc.centre.distance(x, y) <= disc.radius + slack,
+            Self::Polygons(polygons) => polygons.iter().any(|polygon| polygon.intersects(&Point::new(x, y))),
+        }
+    }
+
+    /// Distance of a place from the region's rim, positive within.
+    pub(super) fn depth(&self, [x, y]: [f64; 2]) -> f64 {
+        match self {
+            Self::Box(xs, ys) => {
+                let [across, along] = [(xs, x), (ys, y)].map(|([low, high], at)| (at - low).min(high - at));
+                let within = across.min(along);
+                if within >= 0.0 { within } else { -across.min(0.0).hypot(along.min(0.0)) }
+            }
+            Self::Disc(disc) => disc.radius - disc.centre.distance(x, y),
+            Self::Polygons(polygons) => {
+                let place = Point::new(x, y);
+                let depth = |polygon: &Polygon| {
+                    let rings = std::iter::once(polygon.exterior()).chain(polygon.interiors());
+                    let away =
+                        rings.map(|ring| Euclidean.distance(&place, ring)).fold(f64::INFINITY, f64::min);
+                    if polygon.intersects(&place) { away } else { -away }
+                };
+                polygons.iter().map(depth).fold(f64::NEG_INFINITY, f64::max)
+            }
+        }
+    }
+
+    /// The ends [low, high] of the region along x and y.
+    pub(super) fn bounds(&self) -> [[f64; 2]; 2] {
+        match self {
+            Self::Box(x, y) => [*x, *y],
+            Self::Disc(disc) => {
+                let [cx, cy] = match disc.centre {
+                    Centre::X(x) => [x, 0.0],
+                    Centre::Xy(xy) => xy,
+                };
+                [cx, cy].map(|at| [at - disc.radius, at + disc.radius])
+            }
+            Self::Polygons(polygons) => {
+                let mut bounds = [[f64::INFINITY, f64::NEG_INFINITY]; 2];
+                for rect in polygons.iter().filter_map(BoundingRect::bounding_rect) {
+                    let ends = [[rect.min().x, rect.max().x], [rect.min().y, rect.max().y]];
+                    for (all, one) in bounds.iter_mut().zip(ends) {
+                        *all = [all[0].min(one[0]), all[1].max(one[1])];
+                    }
+                }
+                bounds
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn plane() -> Points {
+        Points { x: vec![0.0], y: Some(vec![0.0]) }
+    }
+
+    #[test]
+    fn a_box_has_its_rim_and_may_be_without_breadth() {
+        let area = Region::Box(vec![0.0, 0.0, 0.25, 0.75]).area(&plane(), Path::new("")).unwrap();
+        assert!(area.holds([0.0, 0.25], 0.0) && area.holds([0.0, 0.75], 0.0));
+        assert!(!area.holds([0.0, 0.76], 1e-3) && !area.holds([0.01, 0.5], 1e-3));
+        assert!(area.holds([1e-12, 0.5], 1e-9), "rounding does not push a place off an edge");
+        let strip = Region::Box(vec![0.0, 1.0]).area(&plane(), Path::new("")).unwrap();
+        assert!(strip.holds([0.5, 1e6], 0.0));
+        assert_eq!([[0.25, 9.0], [-3.0, 0.0]].map(|place| strip.depth(place)), [0.25, -3.0]);
+        let square = Region::Box(vec![0.0, 1.0, 0.0, 1.0]).area(&plane(), Path::new("")).unwrap();
+        assert_eq!([[0.5, 0.125], [4.0, 5.0]].map(|place| square.depth(place)), [0.125, -5.0]);
+    }
+
+    #[test]
+    fn a_polygon_has_its_hole_not() {
+        let folder = tempfile::tempdir().unwrap();
+        let ring = r#"{"type":"Polygon","coordinates":[[[0,0],[4,0],[4,4],[0,4],[0,0]],[[1,1],[1,3],[3,3],[3,1],[1,1]]]}"#;
+        std::fs::write(folder.path().join("ring.geojson"), ring).unwrap();
+        let area = Region::File("ring.geojson".into()).area(&plane(), folder.path()).unwrap();
+        assert!(area.holds([0.5, 2.0], 0.0) && !area.holds([2.0, 2.0], 0.0) && !area.holds([5.0, 2.0], 0.0));
+        assert_eq!(area.bounds(), [[0.0, 4.0]; 2]);
+        assert_eq!([[0.5, 2.0], [2.0, 2.0], [7.0, 8.0]].map(|place| area.depth(place)), [0.5, -1.0, -5.0]);
+    }
+}

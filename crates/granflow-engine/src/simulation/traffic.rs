@@ -1,0 +1,52 @@
+//! What a run takes of the memory, and what a step asks of it at least.
+
+use super::Simulation;
+use crate::field::bytes_per_cell;
+use crate::observe::Maps;
+use granflow_model::scheme::Scheme;
+
+/// Bytes a cell and step that pass between memory and caches if every number is fetched and brought back once a stage.
+///
+/// Neighbours are taken to be in the cache already; the ground of tiles that see only one is not read at all.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Traffic {
+    /// Of the state and the ground that is read.
+    pub read: f64,
+    /// Of the state that is written.
+    pub written: f64,
+    /// Fetched only to be written over: a line of the cache is read before a part of it is written.
+    pub allocated: f64,
+}
+
+impl Traffic {
+    /// All of them.
+    pub fn sum(&self) -> f64 {
+        self.read + self.written + self.allocated
+    }
+}
+
+impl<const D: usize, S: Scheme<D, f64>> Simulation<D, S> {
+    /// Bytes that a cell takes while a run computes: its state now and next, its ground, and the maps if they are kept.
+    pub fn bytes_per_cell(maps: bool) -> usize {
+        let fields = 2 * bytes_per_cell::<S::State>() + bytes_per_cell::<S::Ground>();
+        fields + if maps { Maps::BYTES_PER_CELL } else { 0 }
+    }
+    /// What a step asks of the memory where every tile is awake and no maps are kept.
+    pub fn traffic(&self) -> Traffic {
+        let state = bytes_per_cell::<S::State>() as f64;
+        let cells = |even: bool| {
+            let tiles = self.tiles.iter().filter(|tile| tile.even || !even);
+            let count = |[from, to]: [usize; 2]| to - from;
+            tiles.map(|tile| count(tile.columns) * count(tile.rows)).sum::<usize>() as f64
+        };
+        let ground = bytes_per_cell::<S::Ground>() as f64 * (1.0 - cells(true) / cells(false));
+        let mut traffic = Traffic { read: 0.0, written: 0.0, allocated: 0.0 };
+        for keep in self.stages {
+            traffic.read += state + ground;
+            traffic.written += state;
+            // A later stage reads what it writes over, for the average.
+            *(if *keep > 0.0 { &mut traffic.read } else { &mut traffic.allocated }) += state;
+        }
+        traffic
+    }
+}

@@ -1,0 +1,8 @@
+//! The world of a case on terrain: elevation models, coordinate systems, release areas.
+//!
+//! [`raster`] reads and writes GeoTIFF and ESRI ASCII, [`terrain`] fits slope and curvature to the cells, [`release`] turns
+//! polygons, rasters and caps into volume per plan area.
+
+pub mod raster;
+pub mod release;
+pub mod terrain;

@@ -1,0 +1,235 @@
+//! Rasters: square cells in metres with nodata and a coordinate reference system, read from GeoTIFF and ESRI ASCII
+//! grids, resampled, and written as GeoTIFF.
+
+mod ascii;
+mod crs;
+mod error;
+mod geotiff;
+mod resample;
+mod wkt;
+
+pub use crs::{Crs, CrsError, well_known_text};
+pub use error::RasterError;
+
+use std::io::Read;
+use std::path::{Path, PathBuf};
+
+/// Values that stand for nodata wherever they occur.
+const UNDECLARED: [f64; 4] = [-9999.0, -32768.0, -32767.0, -99999.0];
+
+/// A grid of square cells, north up on disk and south first in memory.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Raster {
+    /// Number of cells from west to east.
+    pub columns: usize,
+    /// Number of cells from south to north.
+    pub rows: usize,
+    /// x of the western outer edge \[m\].
+    pub west: f64,
+    /// y of the southern outer edge \[m\].
+    pub south: f64,
+    /// Edge length of a cell \[m\].
+    pub cell: f64,
+    /// One value per cell at index `row * columns + column`, row 0 in the south; NaN is nodata.
+    pub values: Vec<f64>,
+    /// Coordinate reference system, where known.
+    pub crs: Option<Crs>,
+}
+
+impl Raster {
+    /// Reads a GeoTIFF (any sample type and compression, BigTIFF) or an ESRI ASCII grid, told apart by content.
+    ///
+    /// The CRS comes from the GeoTIFF keys or from the `.prj` file beside an ASCII grid.
+    ///
+    /// # Errors
+    /// Every [`RasterError`] but those of writing; each names the file and the cure.
+    pub fn read(path: &Path) -> Result<Raster, RasterError> {
+        Raster::read_in(path, None)
+    }
+
+    /// As [`Raster::read`], with the CRS a case gives for files that carry none.
+    ///
+    /// # Errors
+    /// As [`Raster::read`]; also [`RasterError::CrsMismatch`] when the file's own CRS contradicts the given one.
+    pub fn read_in(path: &Path, crs: Option<&Crs>) -> Result<Raster, RasterError> {
+        let mut magic = [0; 4];
+        let file = std::fs::File::open(path).and_then(|mut file| file.read(&mut magic));
+        file.map_err(|source| RasterError::Io { path: path.into(), source })?;
+        let raster = match &magic {
+            b"II*\0" | b"MM\0*" | b"II+\0" | b"MM\0+" => geotiff::read(path, crs)?,
+            _ => ascii::read(path, crs)?,
+        };
+        raster.checked(path)
+    }
+
+    /// A raster of the same cells and CRS with other values, or none.
+    pub fn with_values(&self, values: Vec<f64>) -> Raster {
+        debug_assert!(values.is_empty() || values.len() == self.columns * self.rows);
+        let Raster { columns, rows, west, south, cell, .. } = *self;
+        Raster { columns, rows, west, south, cell, values, crs: self.crs.clone() }
+    }
+
+    /// x of the centre of a column \[m\].
+    pub fn x(&self, column: usize) -> f64 {
+        self.west + (column as f64 + 0.5) * self.cell
+    }
+
+    /// y of the centre of a row, counted from the south \[m\].
+    pub fn y(&self, row: usize) -> f64 {
+        self.south + (row as f64 + 0.5) * self.cell
+    }
+
+    /// x of the eastern outer edge \[m\].
+    pub fn east(&self) -> f64 {
+        self.west + self.columns as f64 * self.cell
+    }
+
+    /// y of the northern outer edge \[m\].
+    pub fn north(&self) -> f64 {
+        self.south + self.rows as f64 * self.cell
+    }
+
+    /// The value of a cell, NaN for nodata.
+    ///
+    /// # Panics
+    /// When the cell does not exist.
+    pub fn at(&self, column: usize, row: usize) -> f64 {
+        assert!(column < self.columns, "column {column} of {}", self.columns);
+        self.values[row * self.columns + column]
+    }
+
+    /// Column and row of the cell at an index of [`Raster::values`].
+    pub fn place(&self, index: usize) -> [usize; 2] {
+        [index % self.columns, index / self.columns]
+    }
+
+    /// Smallest and largest value, `None` where all is nodata.
+    pub fn range(&self) -> Option<(f64, f64)> {
+        let valid = self.values.iter().filter(|value| !value.is_nan());
+        valid
+            .fold(None, |range, &v| Some(range.map_or((v, v), |(lo, hi): (f64, f64)| (lo.min(v), hi.max(v)))))
+    }
+
+    /// Refuses a raster whose CRS contradicts that of `terrain`; `path` is where it was read from.
+    ///
+    /// # Errors
+    /// [`RasterError::CrsMismatch`] with the command that reprojects.
+    pub fn same_system(&self, path: &Path, terrain: &Raster) -> Result<(), RasterError> {
+        let (Some(own), Some(wanted)) = (&self.crs, &terrain.crs) else { return Ok(()) };
+        match own.contradiction(wanted) {
+            None => Ok(()),
+            Some(proof) => Err(RasterError::mismatch(path, own, wanted, proof)),
+        }
+    }
+
+    /// Degrees show in three ways: the CRS says so, or coordinates fit on a globe of 360 by 180 while the relief is
+    /// more than ten times the extent, as metres over degrees are and no ground is.
+    fn geographic(&self) -> bool {
+        let globe =
+            self.west >= -360.0 && self.east() <= 360.0 && self.south >= -90.0 && self.north() <= 90.0;
+        let extent = self.cell * self.columns.max(self.rows) as f64;
+        let steep = self.range().is_some_and(|(low, high)| high - low > 10.0 * extent);
+        let code = self.crs.as_ref().and_then(|crs| crs.epsg).unwrap_or(0);
+        self.crs.as_ref().is_some_and(Crs::is_geographic)
+            || globe && self.cell < 1.0 && (steep || (4001..5000).contains(&code))
+    }
+
+    /// The demands on every raster: metres, and at least one value.
+    fn checked(self, path: &Path) -> Result<Raster, RasterError> {
+        if self.geographic() {
+            return Err(RasterError::geographic(path, &self));
+        }
+        if let Some(metres) =
+            self.crs.as_ref().and_then(Crs::metres_per_unit).filter(|m| (m - 1.0).abs() > 1e-9)
+        {
+            return Err(RasterError::unit(path, metres, self.cell));
+        }
+        let Some((low, high)) = self.range() else {
+            return Err(RasterError::Empty { path: path.into(), cells: self.values.len() });
+        };
+        if UNDECLARED.contains(&low) || low < -1e30 || high > 1e30 {
+            let found = if high > 1e30 { high } else { low };
+            return Err(RasterError::Undeclared { path: path.into(), found });
+        }
+        Ok(self)
+    }
+}
+
+/// The file beside `path` that has another extension, in lower or upper case.
+pub(crate) fn beside(path: &Path, extension: &str) -> PathBuf {
+    let [lower, upper] = [extension.to_string(), extension.to_uppercase()].map(|e| path.with_extension(e));
+    if !lower.exists() && upper.exists() { upper } else { lower }
+}
+
+/// Turns rows that begin in the north into rows that begin in the south, in place.
+fn turn(values: &mut [f64], columns: usize) {
+    let mut rows = values.chunks_exact_mut(columns);
+    while let (Some(north), Some(south)) = (rows.next(), rows.next_back()) {
+        north.swap_with_slice(south);
+    }
+}
+
+/// The CRS of a file and the one that a case gives, where they agree.
+fn agreed(path: &Path, own: Option<Crs>, given: Option<&Crs>) -> Result<Option<Crs>, RasterError> {
+    let (Some(own), Some(given)) = (&own, given) else { return Ok(own.or(given.cloned())) };
+    match own.contradiction(given) {
+        Some(proof) => Err(RasterError::mismatch(path, own, given, proof)),
+        None => Ok(Some(Crs { epsg: own.epsg.or(given.epsg), wkt: own.wkt.clone().or(given.wkt.clone()) })),
+    }
+}
+
+#[cfg(test)]
+pub(crate) mod tests {
+    use super::*;
+
+    /// A raster of 1 m cells with its corner at the origin and the values of `f` at the cell centres.
+    pub(crate) fn sampled(columns: usize, rows: usize, f: impl Fn(f64, f64) -> f64) -> Raster {
+        let centre = |k| k as f64 + 0.5;
+        let values = (0..rows * columns).map(|k| f(centre(k % columns), centre(k / columns))).collect();
+        Raster { columns, rows, west: 0.0, south: 0.0, cell: 1.0, values, crs: None }
+    }
+
+    fn refused(raster: Raster) -> String {
+        raster.checked(Path::new("dem.tif")).unwrap_err().to_string()
+    }
+
+    #[test]
+    fn degrees_are_refused_with_the_command_that_reprojects() {
+        let degrees =
+            Raster { west: 11.0, south: 47.0, cell: 1e-4, ..sampled(20, 20, |x, y| 1500.0 + x + 2.0 * y) };
+        let message = refused(degrees.clone());
+        assert!(message.contains("gdalwarp -t_srs EPSG:32632 -tr 9.2 9.2 -r bilinear dem.tif"), "{message}");
+        let south = Raster { south: -33.0, west: -70.5, ..degrees.clone() };
+        assert!(refused(south).contains("EPSG:32719"));
+        let flume = Raster { values: sampled(20, 20, |x, _| 1e-4 * x).values, ..degrees };
+        assert!(flume.clone().checked(Path::new("flume.asc")).is_ok());
+        let crs = Some(Crs { epsg: Some(4326), wkt: None });
+        assert!(refused(Raster { crs, ..flume }).contains("gdalwarp"));
+    }
+
+    #[test]
+    fn empty_rasters_and_feet_are_refused() {
+        assert!(refused(sampled(3, 2, |_, _| f64::NAN)).contains("all 6 cells are nodata"));
+        let low = sampled(3, 2, |x, _| if x < 1.0 { -32768.0 } else { 900.0 });
+        assert!(refused(low).contains("gdal_edit.py -a_nodata -32768 dem.tif"));
+        let feet = Crs::parse(r#"PROJCS["x",GEOGCS["y"],UNIT["foot",0.3048]]"#).unwrap();
+        let message = refused(Raster { crs: Some(feet), ..sampled(3, 2, |_, _| 1.0) });
+        assert!(message.contains("0.3048 m") && message.contains("gdalwarp"), "{message}");
+    }
+
+    #[test]
+    fn a_given_system_fills_in_and_a_contradiction_is_refused() {
+        let [a, b] = [31287, 32632].map(|epsg| Crs { epsg: Some(epsg), wkt: None });
+        let path = Path::new("dem.asc");
+        assert_eq!(agreed(path, None, Some(&a)).unwrap(), Some(a.clone()));
+        let message = agreed(path, Some(b.clone()), Some(&a)).unwrap_err().to_string();
+        assert!(
+            message.contains("EPSG:32632 against EPSG:31287") && message.contains("gdalwarp"),
+            "{message}"
+        );
+        let terrain = Raster { crs: Some(a), ..sampled(2, 2, |_, _| 0.0) };
+        let thickness = Raster { crs: Some(b), ..terrain.clone() };
+        let message = thickness.same_system(Path::new("h.tif"), &terrain).unwrap_err().to_string();
+        assert!(message.contains("h.tif") && message.contains("-t_srs EPSG:31287"), "{message}");
+    }
+}

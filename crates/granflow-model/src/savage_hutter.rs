@@ -1,0 +1,108 @@
+//! The Savage-Hutter equations: depth-averaged granular flow with friction that starts, flows, stops and stays.
+//!
+//! h_t + div(h u) = 0, (h u)_t + div(h u u) + grad(beta h^2/2) = g(u) h (report eq. 1; on terrain
+//! [`ground::Terrain`]). The unknowns are [`Flow`]; what is fixed in a cell is a [`ground::Bed`].
+
+pub mod balanced;
+#[cfg(feature = "std")]
+pub mod exact;
+
+pub mod flux;
+pub mod friction;
+pub mod ground;
+pub mod kinetic;
+
+use crate::real::{Real, each, total, unroll};
+use crate::scheme::{Parts, Watch};
+use ground::Bed;
+
+/// A depth below the smallest normal number is none: subnormal numbers round by as much as they hold.
+#[inline(always)]
+fn normal<R: Real>(h: R) -> R {
+    R::select(h.abs().lt(R::of(f64::MIN_POSITIVE)), R::zero(), h)
+}
+
+/// The unknowns of a cell.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Flow<const D: usize, R> {
+    /// Depth (papers: scaled, normal to the chute) or, on terrain, volume per plan area H = h/c \[m\].
+    pub h: R,
+    /// Momentum h u (terrain: H w, w the horizontal velocity \[m/s\]).
+    pub q: [R; D],
+}
+
+impl<const D: usize, R: Real> Flow<D, R> {
+    /// At rest with depth `h`.
+    #[inline(always)]
+    pub fn still(h: R) -> Self {
+        Flow { h, q: [R::zero(); D] }
+    }
+
+    /// u = q/h, and 0 where h is none.
+    #[inline(always)]
+    pub fn velocity(&self) -> [R; D] {
+        let (zero, one) = (R::zero(), R::of(1.0));
+        let wet = R::of(f64::MIN_POSITIVE).le(self.h);
+        let per = R::select(wet, one / R::select(wet, self.h, one), zero);
+        each!(k => self.q[k] * per)
+    }
+
+    /// q = 0 in every component.
+    #[inline(always)]
+    pub fn is_still(&self) -> R::Mask {
+        let mut still = self.q[0].same(R::zero());
+        unroll!(axis in D => {
+            still = still & self.q[axis].same(R::zero());
+        });
+        still
+    }
+
+    /// The mirror image across a wall normal to `axis`.
+    pub fn mirror(mut self, axis: usize) -> Self {
+        self.q[axis] = -self.q[axis];
+        self
+    }
+
+    /// sum over axes of (|u| + sqrt(2 beta h))/dx, the support of the kinetic density (report eq. 28).
+    #[inline(always)]
+    pub fn rate<B: Bed<D, R>>(&self, bed: &B, per: [R; D]) -> R {
+        let u = self.velocity();
+        let along: [R; D] = each!(axis => {
+            let beta = bed.beta(axis);
+            (u[axis].abs() + ((beta + beta) * self.h.positive()).sqrt()) * per[axis]
+        });
+        total(along)
+    }
+
+    /// Volume, speed, energy of this state on `bed`; a film is thinner than `film`.
+    #[inline(always)]
+    pub fn watch<B: Bed<D, R>>(&self, bed: &B, film: R) -> Watch<R> {
+        let square = bed.square(self.velocity());
+        Watch {
+            volume: self.h,
+            square,
+            energy: self.h * square * R::of(0.5),
+            thickness: bed.thickness(self.h),
+            film: R::select(self.h.lt(film), R::of(1.0), R::zero()),
+        }
+    }
+}
+
+impl<const D: usize, R: Real> Parts<R> for Flow<D, R> {
+    const COUNT: usize = 1 + D;
+    #[inline(always)]
+    fn gather(part: impl Fn(usize) -> R) -> Self {
+        let mut flow = Flow::still(part(0));
+        unroll!(axis in D => {
+            flow.q[axis] = part(1 + axis);
+        });
+        flow
+    }
+    #[inline(always)]
+    fn scatter(self, mut put: impl FnMut(usize, R)) {
+        put(0, self.h);
+        unroll!(axis in D => {
+            put(1 + axis, self.q[axis]);
+        });
+    }
+}

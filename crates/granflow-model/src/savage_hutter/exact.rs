@@ -1,0 +1,169 @@
+//! Exact and semi-analytic solutions of the Savage-Hutter and shallow water equations, to measure schemes by.
+//!
+//! In one dimension all of them solve
+//!
+//! ```text
+//! h_t + (h u)_x = 0,    (h u)_t + (h u^2 + beta h^2/2)_x = (s - sgn(u) r) h
+//! ```
+//!
+//! with the pressure constant `beta`, the pull of the slope `s` and the friction `r`. In SI units
+//! `beta = G k cos z` (m/s2), `s = G sin z`, `r = G cos z tan d` with gravity `G`, bed slope angle `z`, friction
+//! angle `d` and earth pressure coefficient `k`; in the scaled variables of Kaland & Struckmeier (2007, eq. 1;
+//! lengths by L, heights by H = eps L, times by sqrt(L/G)) `beta = eps k cos z`, `s = sin z`,
+//! `r = cos z tan d`. Angles are in radians, distances are measured along the bed.
+
+mod cap;
+mod dam_break;
+mod flat_dam_break;
+mod jump;
+mod riemann;
+mod slab;
+mod thacker;
+
+pub use cap::{CapMotion, CapRelease, ParabolicCap, SimilarityCap, SimilarityCapState};
+pub use dam_break::SlopeDamBreak;
+pub use flat_dam_break::{FlatContour, FlatDamBreak};
+pub use jump::GranularJump;
+pub use riemann::{Riemann, Wave};
+pub use slab::SlidingSlab;
+pub use thacker::{ThackerParaboloid, lake_depth};
+
+/// Depth and velocity of a flow in one dimension (m and m/s, or both scaled).
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Flow1 {
+    /// Depth h >= 0, normal to the bed.
+    pub h: f64,
+    /// Velocity along the bed; 0 where h = 0.
+    pub u: f64,
+}
+
+impl Flow1 {
+    /// No material.
+    pub const DRY: Self = Self { h: 0.0, u: 0.0 };
+
+    /// Discharge q = h u.
+    pub fn q(self) -> f64 {
+        self.h * self.u
+    }
+}
+
+/// Depth and velocity of a flow in two dimensions (m and m/s, or both scaled).
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Flow2 {
+    /// Depth h >= 0, normal to the bed.
+    pub h: f64,
+    /// Velocity along x; 0 where h = 0.
+    pub u: f64,
+    /// Velocity along y; 0 where h = 0.
+    pub v: f64,
+}
+
+impl Flow2 {
+    /// No material.
+    pub const DRY: Self = Self { h: 0.0, u: 0.0, v: 0.0 };
+}
+
+/// Why a solution cannot be set up.
+#[derive(Debug, Clone, PartialEq)]
+pub enum ExactError {
+    /// One parameter is outside the range where it has a meaning.
+    OutOfRange {
+        /// The parameter.
+        name: &'static str,
+        /// Its value.
+        found: f64,
+        /// The values that are allowed.
+        allowed: &'static str,
+    },
+    /// The parameters are fine one by one, but the formula does not solve the equations for them together.
+    NotValid {
+        /// The solution asked for.
+        solution: &'static str,
+        /// The condition that is broken.
+        requirement: &'static str,
+        /// Its left-hand side.
+        left: f64,
+        /// Its right-hand side.
+        right: f64,
+    },
+}
+
+impl core::fmt::Display for ExactError {
+    fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
+        match self {
+            Self::OutOfRange { name, found, allowed } => {
+                write!(f, "{name} = {found}, but it must be {allowed}")
+            }
+            Self::NotValid { solution, requirement, left, right } => write!(
+                f,
+                "{solution} does not hold here: {requirement} is needed, but {left} against {right} was given"
+            ),
+        }
+    }
+}
+
+impl core::error::Error for ExactError {}
+
+fn positive(name: &'static str, found: f64) -> Result<f64, ExactError> {
+    if found > 0.0 && found.is_finite() {
+        Ok(found)
+    } else {
+        Err(ExactError::OutOfRange { name, found, allowed: "positive and finite" })
+    }
+}
+
+fn not_negative(name: &'static str, found: f64) -> Result<f64, ExactError> {
+    if found >= 0.0 && found.is_finite() {
+        Ok(found)
+    } else {
+        Err(ExactError::OutOfRange { name, found, allowed: "0 or positive, and finite" })
+    }
+}
+
+fn finite(name: &'static str, found: f64) -> Result<f64, ExactError> {
+    if found.is_finite() { Ok(found) } else { Err(ExactError::OutOfRange { name, found, allowed: "finite" }) }
+}
+
+/// An angle of a bed or of friction.
+fn angle(name: &'static str, found: f64) -> Result<f64, ExactError> {
+    if (0.0..core::f64::consts::FRAC_PI_2).contains(&found) {
+        Ok(found)
+    } else {
+        Err(ExactError::OutOfRange { name, found, allowed: "from 0 to below pi/2 (radians)" })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{ExactError, Flow1};
+    use std::prelude::v1::*;
+
+    /// What is left of the two equations of motion at a point of a smooth solution, by central differences
+    /// of fourth order: mass, and momentum against the given `source` (force per depth).
+    pub(super) fn residual(
+        flow: impl Fn(f64, f64) -> Flow1,
+        beta: f64,
+        source: f64,
+        x: f64,
+        t: f64,
+        step: f64,
+    ) -> (f64, f64) {
+        let d = |f: &dyn Fn(f64) -> f64| {
+            (8.0 * (f(step) - f(-step)) - (f(2.0 * step) - f(-2.0 * step))) / (12.0 * step)
+        };
+        let force = |s: Flow1| s.h * s.u * s.u + beta * s.h * s.h / 2.0;
+        let mass = d(&|e| flow(x, t + e).h) + d(&|e| flow(x + e, t).q());
+        let momentum = d(&|e| flow(x, t + e).q()) + d(&|e| force(flow(x + e, t))) - source * flow(x, t).h;
+        (mass, momentum)
+    }
+
+    #[test]
+    fn errors_name_the_parameter_and_the_range() {
+        let text = super::positive("height", -1.0).unwrap_err().to_string();
+        assert_eq!(text, "height = -1, but it must be positive and finite");
+        assert!(super::not_negative("depth", f64::NAN).is_err());
+        assert!(super::angle("slope", 1.6).is_err());
+        assert!(super::finite("velocity", f64::INFINITY).is_err());
+        assert!(matches!(super::angle("slope", -0.1), Err(ExactError::OutOfRange { name: "slope", .. })));
+    }
+}

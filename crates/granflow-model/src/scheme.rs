@@ -1,0 +1,308 @@
+//! A scheme is a few pointwise functions; arrays, axes, threads and files live elsewhere.
+
+use crate::real::{Real, each, unroll};
+
+/// A value of a cell that is stored as a few numbers, one array each (struct of arrays).
+///
+/// `gather` asks for, and `scatter` hands out, parts below `COUNT`; the engine panics at others.
+pub trait Parts<R: Real>: Copy + Send + Sync + 'static {
+    /// How many numbers.
+    const COUNT: usize;
+    /// The parts that a grid keeps in single precision, a bit each.
+    const SINGLE: u32 = 0;
+    /// The parts that are the same in all cells of a grid, a bit each: they are kept once.
+    const SHARED: u32 = 0;
+    /// Gather the value from its numbers.
+    fn gather(part: impl Fn(usize) -> R) -> Self;
+    /// Hand the numbers out.
+    fn scatter(self, put: impl FnMut(usize, R));
+}
+
+impl<R: Real> Parts<R> for () {
+    const COUNT: usize = 0;
+    #[inline(always)]
+    fn gather(_part: impl Fn(usize) -> R) -> Self {}
+    #[inline(always)]
+    fn scatter(self, _put: impl FnMut(usize, R)) {}
+}
+
+impl<R: Real> Parts<R> for R {
+    const COUNT: usize = 1;
+    #[inline(always)]
+    fn gather(part: impl Fn(usize) -> R) -> Self {
+        part(0)
+    }
+    #[inline(always)]
+    fn scatter(self, mut put: impl FnMut(usize, R)) {
+        put(0, self);
+    }
+}
+
+impl<R: Real, P: Parts<R>, const N: usize> Parts<R> for [P; N] {
+    const COUNT: usize = N * P::COUNT;
+    #[inline(always)]
+    fn gather(part: impl Fn(usize) -> R) -> Self {
+        each!(item => P::gather(
+            #[inline(always)]
+            |k| part(item * P::COUNT + k),
+        ))
+    }
+    #[inline(always)]
+    fn scatter(self, mut put: impl FnMut(usize, R)) {
+        unroll!(item in N => {
+            self[item].scatter(
+                #[inline(always)]
+                |k, value| put(item * P::COUNT + k, value),
+            );
+        });
+    }
+}
+
+/// Implements [`Parts`] for a struct, field by field; the fields of the second list are masks, kept as 1 and 0.
+#[macro_export]
+macro_rules! parts {
+    ([$($generics:tt)*] $name:ty { $($field:ident: $kind:ty),* } masks { $($mask:ident),* }) => {
+        impl<$($generics)*> $crate::scheme::Parts<R> for $name {
+            const COUNT: usize =
+                0 $(+ <$kind as $crate::scheme::Parts<R>>::COUNT)* $(+ { stringify!($mask); 1 })*;
+            #[inline(always)]
+            #[allow(unused_assignments, unused_mut, unused_variables, reason = "the last field moves on as the others do")]
+            fn gather(part: impl Fn(usize) -> R) -> Self {
+                let mut next = 0;
+                $(
+                    let from = next;
+                    next += <$kind as $crate::scheme::Parts<R>>::COUNT;
+                    let $field = <$kind as $crate::scheme::Parts<R>>::gather(#[inline(always)] |k| part(from + k));
+                )*
+                $(
+                    let $mask = R::zero().lt(part(next));
+                    next += 1;
+                )*
+                Self { $($field,)* $($mask,)* }
+            }
+            #[inline(always)]
+            #[allow(unused_assignments, unused_mut, unused_variables, reason = "the last field moves on as the others do")]
+            fn scatter(self, mut put: impl FnMut(usize, R)) {
+                let mut next = 0;
+                $(
+                    let from = next;
+                    next += <$kind as $crate::scheme::Parts<R>>::COUNT;
+                    <$kind as $crate::scheme::Parts<R>>::scatter(self.$field, #[inline(always)] |k, value| put(from + k, value));
+                )*
+                $(
+                    put(next, R::select(self.$mask, R::of(1.0), R::zero()));
+                    next += 1;
+                )*
+            }
+        }
+    };
+}
+pub use parts;
+
+/// A cell's state and what is fixed there.
+#[derive(Clone, Copy, Debug)]
+pub struct Cell<S, G> {
+    /// The unknowns.
+    pub state: S,
+    /// What does not change in time: slope, bed, coefficients.
+    pub ground: G,
+}
+
+/// The distance of cell centres along each axis, and its reciprocal.
+#[derive(Clone, Copy, Debug)]
+pub struct Spacing<const D: usize, R> {
+    /// dx, dy in the units of the case.
+    pub size: [R; D],
+    /// 1/dx, 1/dy.
+    pub per: [R; D],
+    /// The smallest of dx, dy.
+    pub smallest: f64,
+}
+
+impl<const D: usize, R: Real> Spacing<D, R> {
+    /// From the cell sizes.
+    #[inline(always)]
+    pub fn new(size: [f64; D]) -> Self {
+        Spacing {
+            size: each!(k => R::of(size[k])),
+            per: each!(k => R::of(1.0 / size[k])),
+            smallest: size.into_iter().fold(f64::INFINITY, f64::min),
+        }
+    }
+}
+
+/// A cell and its neighbours along each axis.
+#[derive(Clone, Copy, Debug)]
+pub struct Near<const D: usize, R, S, G> {
+    /// The cell itself.
+    pub here: Cell<S, G>,
+    /// The neighbour towards smaller coordinates, per axis.
+    pub lo: [Cell<S, G>; D],
+    /// The neighbour towards larger coordinates, per axis.
+    pub hi: [Cell<S, G>; D],
+    /// Cell sizes.
+    pub spacing: Spacing<D, R>,
+}
+
+/// The neighbourhood of a cell, read where a scheme asks.
+pub trait Window<const D: usize, R: Real, S: Copy, G: Copy> {
+    /// The cell `offset` cells away along each axis, at most [`REACH`].
+    fn at(&self, offset: [isize; D]) -> Cell<S, G>;
+    /// Cell sizes.
+    fn spacing(&self) -> &Spacing<D, R>;
+
+    /// The cell with its neighbours along each axis.
+    #[inline(always)]
+    fn cross(&self) -> Near<D, R, S, G> {
+        let here = self.at([0; D]);
+        let (mut lo, mut hi) = ([here; D], [here; D]);
+        unroll!(axis in D => {
+            let mut step = [0; D];
+            step[axis] = 1;
+            hi[axis] = self.at(step);
+            step[axis] = -1;
+            lo[axis] = self.at(step);
+        });
+        Near { here, lo, hi, spacing: *self.spacing() }
+    }
+}
+
+/// How far along each axis [`Scheme::reconstruct`] sees.
+pub const REACH: usize = 2;
+
+/// What passes a cell's two faces of one axis.
+#[derive(Clone, Copy, Debug)]
+pub struct Faces<F> {
+    /// Through the face towards smaller coordinates.
+    pub lo: F,
+    /// Through the face towards larger coordinates.
+    pub hi: F,
+}
+
+/// The side of a face on which a cell lies.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Side {
+    /// The cell with the smaller coordinate.
+    Left,
+    /// The cell with the larger coordinate.
+    Right,
+}
+
+/// What happens at the end of an axis of the grid.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Boundary {
+    /// Transmissive: the ghost cells copy the edge cell.
+    Open,
+    /// Reflecting: the ghost cells are the mirror image, nothing passes.
+    Wall,
+    /// The two ends of the axis are joined.
+    Periodic,
+    /// Nothing lies beyond: what leaves is booked and gone, nothing comes back. The edge of a raster.
+    Nothing,
+}
+
+/// A finite-volume scheme: U -> E_dt(U), written for one cell, one face and one corner.
+/// `reconstruct` sees a cell and its neighbours, `flux` the edges of two cells, `corner` those of the cells around a
+/// corner, `update` a cell with what its faces and corners found. A Runge-Kutta method is a convex combination of such
+/// maps ([`crate::time`]).
+pub trait Scheme<const D: usize, R: Real>: Copy + Send + Sync {
+    /// The unknowns of a cell.
+    type State: Parts<R>;
+    /// The static data of a cell.
+    type Ground: Parts<R>;
+    /// What follows from a cell alone.
+    type Prime: Copy;
+    /// What a cell offers to its faces and remembers for its update.
+    type Edges: Parts<R>;
+    /// What passes a face, seen from both sides.
+    type Flux: Parts<R>;
+    /// What is found at a corner of cells; `()` where a scheme needs none.
+    type Corner: Parts<R>;
+
+    /// Runs end when the state changes slowly enough: the largest change of a step is kept.
+    const DRIFTS: bool = false;
+
+    /// Let `work` have the same scheme on another scalar: states and grounds of the same parts in the same order.
+    fn on<L: Real, W: Work<D, L>>(&self, work: W) -> W::Output;
+
+    /// What follows from a cell alone: the place for divisions and roots, which are computed ahead of what waits for them.
+    fn prime(&self, here: &Cell<Self::State, Self::Ground>) -> Self::Prime;
+    /// What the cell in the middle of the window offers to its faces and corners.
+    fn reconstruct(
+        &self,
+        window: &impl Window<D, R, Self::State, Self::Ground>,
+        prime: &Self::Prime,
+    ) -> Self::Edges;
+    /// What passes the face between `left` and `right` along `axis`.
+    fn flux(&self, axis: usize, left: &Self::Edges, right: &Self::Edges) -> Self::Flux;
+    /// What is found at a corner: `around[y][x]` are the cells below and above it, left and right of it; in one dimension
+    /// the corner is the face, and both rows are the same.
+    fn corner(&self, around: [[&Self::Edges; 2]; 2]) -> Self::Corner;
+    /// The state after `dt` of the cell in the middle of the window; `corners[y][x]` are the cell's lower and upper ones,
+    /// left and right.
+    fn update(
+        &self,
+        window: &impl Window<D, R, Self::State, Self::Ground>,
+        edges: &Self::Edges,
+        faces: &[Faces<Self::Flux>; D],
+        corners: &[[Self::Corner; 2]; 2],
+        dt: R,
+    ) -> Self::State;
+
+    /// The mirror image of a state across a wall normal to `axis`.
+    fn mirror(&self, axis: usize, state: &Self::State) -> Self::State;
+    /// The mirror image of a ground across a wall normal to `axis`.
+    fn mirror_ground(&self, axis: usize, ground: &Self::Ground) -> Self::Ground;
+    /// sum over axes of (fastest signal)/dx: the Courant condition is dt times this <= courant; finite in every finite state, for
+    /// a run ends where it is not. \[1/time\]
+    fn rate(&self, here: &Cell<Self::State, Self::Ground>, spacing: &Spacing<D, R>) -> R;
+    /// The largest Courant number with which a fixed step is taken.
+    fn most_courant(&self) -> f64 {
+        f64::INFINITY
+    }
+    /// keep * old + (1 - keep) * new, without undoing an exact stop of `new`.
+    fn average(&self, keep: R, old: &Self::State, new: &Self::State) -> Self::State;
+    /// The cell rests by a proof of the scheme (or is dry): with neighbours at rest nothing will change here.
+    fn rests(&self, here: &Cell<Self::State, Self::Ground>) -> R::Mask;
+    /// The cell lies outside the data and holds nothing that is computed.
+    fn outside(&self, ground: &Self::Ground) -> R::Mask;
+    /// Under which of the five exits the books put what passes from `here` to `there`, `way` being the one on that side;
+    /// none where it stays in the domain.
+    fn exit(&self, _here: &Self::Ground, there: &Self::Ground, _way: usize) -> Option<usize> {
+        R::any(self.outside(there)).then_some(4)
+    }
+    /// Volume per time and area that is poured on a cell.
+    fn supply(&self, _ground: &Self::Ground) -> R {
+        R::zero()
+    }
+    /// Volume per time and face length that the cell on `side` books as leaving it to the other side.
+    fn booked(&self, flux: &Self::Flux, side: Side) -> R;
+    /// Pull of the mass if it were at rest, as a share of the static bound: up to 1 it stays; 0 where dry and where
+    /// nothing holds.
+    fn margin(&self, window: &impl Window<D, R, Self::State, Self::Ground>) -> R;
+    /// What the run keeps watch of in a cell.
+    fn watch(&self, here: &Cell<Self::State, Self::Ground>) -> Watch<R>;
+}
+
+/// Work that is done with a scheme.
+pub trait Work<const D: usize, R: Real> {
+    /// What it gives.
+    type Output;
+    /// Do it.
+    fn with<S: Scheme<D, R>>(self, scheme: &S) -> Self::Output;
+}
+
+/// What a run watches in every cell.
+#[derive(Clone, Copy, Debug)]
+pub struct Watch<R> {
+    /// Conserved volume per area.
+    pub volume: R,
+    /// Squared speed along the bed.
+    pub square: R,
+    /// Kinetic energy per density and area, volume * speed^2 / 2.
+    pub energy: R,
+    /// Thickness normal to the bed.
+    pub thickness: R,
+    /// 1 where the cell is a film (thinner than the scheme moves), else 0.
+    pub film: R,
+}
