@@ -1,9 +1,11 @@
 //! What the sandpile schemes keep at every step, on any table and under any source.
 
+use granflow::grid::Grid;
 use granflow::hadeler_kuttler::direct::{Equilibrium, equilibrium, rays, surface};
 use granflow::hadeler_kuttler::scheme::{ADAPTIVE, FIRST_ORDER, HadelerKuttler, SECOND_ORDER, Slopes};
 use granflow::hadeler_kuttler::table::Table;
 use granflow::hadeler_kuttler::{Ground, Pile};
+use granflow::scheme::Boundary;
 use granflow::simulation::{Failure, Simulation, StepSize};
 use granflow::time::{EULER, SSP_RK2};
 use proptest::prelude::*;
@@ -57,7 +59,12 @@ impl<const D: usize> Setting<D> {
             }
             None => Pile { u: 0.0, v: 0.0 },
         };
-        let grid = self.table.grid([0.0; D], self.size);
+        let grid = Grid {
+            cells: self.table.nodes(),
+            origin: [0.0; D],
+            size: self.size,
+            boundary: [[Boundary::Nothing; 2]; D],
+        };
         Simulation::new(scheme, grid, stages, step, |index| self.ground(index, 1.0), state)
     }
     fn courant(scheme: HadelerKuttler) -> StepSize {
