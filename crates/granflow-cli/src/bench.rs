@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use std::time::Duration;
 
 use granflow::case::nearest;
-use granflow::simulation::Instructions;
+use granflow::simulation::SimdLevel;
 use granflow::speed::{Extent, SETUPS, Setup, SpeedError, Triad, spells};
 
 use crate::failure::{Failure, print};
@@ -60,7 +60,7 @@ struct Plan {
     setups: Vec<&'static Setup>,
     cells: Vec<usize>,
     threads: Vec<usize>,
-    instructions: Instructions,
+    instructions: SimdLevel,
 }
 
 /// Measures and prints a table, row by row.
@@ -81,7 +81,7 @@ pub fn bench(options: &Options) -> Result<(), Failure> {
     for setup in plan.setups {
         for cells in sizes(setup, &plan.cells) {
             let mut load = setup.begin(Extent { cells, wet: options.wet });
-            load.use_instructions(plan.instructions);
+            load.use_simd(plan.instructions);
             for &threads in &plan.threads {
                 let spells = spells(load.as_mut(), threads, repeats, Duration::from_secs_f64(seconds));
                 let row = Row::new(setup, cells, threads, load.as_ref(), &spells?);
@@ -119,9 +119,9 @@ fn plan(options: &Options) -> Result<Plan, Failure> {
         names => names.iter().map(|name| named(name)).collect::<Result<_, _>>()?,
     };
     let instructions = match options.instructions.as_str() {
-        "widest" => Instructions::Widest,
-        "narrow" => Instructions::Narrow,
-        "scalar" => Instructions::Scalar,
+        "widest" => SimdLevel::Best,
+        "narrow" => SimdLevel::Avx2,
+        "scalar" => SimdLevel::Scalar,
         other => {
             let message = format!("there are no instructions `{other}`");
             return Err(Failure::usage(message, "allowed: widest, narrow, scalar"));

@@ -36,7 +36,7 @@ impl Start {
         let totals = simulation.totals();
         Start {
             rate: simulation.rate(),
-            margin: simulation.margins().into_iter().fold(0.0, f64::max),
+            margin: simulation.yield_ratios().into_iter().fold(0.0, f64::max),
             volume: totals.volume,
             wet: totals.wet,
             bytes: simulation.grid().count() * Simulation::<D, S>::bytes_per_cell(maps),

@@ -9,7 +9,7 @@ use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 const PLAIN: Duration = Duration::from_secs(5);
 /// Between two looks at the clock that redraw the bar.
 const BAR: Duration = Duration::from_millis(100);
-/// Parts of the bar.
+/// Components of the bar.
 const PARTS: u64 = 1000;
 
 /// Where a run is.

@@ -10,14 +10,14 @@ mod tally;
 
 use crate::field::Field;
 use crate::grid::Layout;
-use crate::lanes::{Inside, Instructions, Job, Wide};
+use crate::lanes::{SimdContext, SimdKernel, SimdLevel, SimdVector};
 use crate::observe::Maps;
-use granflow_model::scheme::{Scheme, Work};
+use granflow_model::scheme::{Scheme, SchemeVisitor};
 use rayon::prelude::*;
 use std::marker::PhantomData;
 use std::ops::Range;
-use strip::Desk;
-pub use tally::Tally;
+use strip::Workspace;
+pub use tally::TileStats;
 
 /// Most cells side by side that are computed in one go, with the neighbour at each end.
 pub(crate) const STRIP: usize = 128;
@@ -29,11 +29,11 @@ pub const fn tile_size(dimensions: usize) -> [usize; 2] {
 }
 
 /// Most rows of tiles that one thread computes in one go: the rows between them are then read once.
-pub const MOST_TILES: usize = 6;
+pub const MAX_TILES: usize = 6;
 
 /// A rectangle of tiles that are awake, row by row in the list of them.
 #[derive(Clone, Debug)]
-pub struct Run {
+pub struct TileBlock {
     /// Places in the list.
     pub awake: Range<usize>,
     /// How many lie side by side.
@@ -41,7 +41,7 @@ pub struct Run {
 }
 
 /// The five ways out of the domain, as the ledger books them.
-pub const EXITS: [&str; 5] = ["left", "right", "bottom", "top", "nodata"];
+pub const OUTLETS: [&str; 5] = ["left", "right", "bottom", "top", "nodata"];
 
 /// A rectangle of cells, half open.
 #[derive(Clone, Debug)]
@@ -51,37 +51,37 @@ pub struct Tile {
     /// Rows from, to.
     pub rows: [usize; 2],
     /// The faces that lead out of the domain, by number.
-    pub leaks: Range<usize>,
+    pub outlets: Range<usize>,
     /// The ground is the same in all cells that the tile sees.
-    pub even: bool,
+    pub uniform: bool,
 }
 
 /// A face that leads out of the domain.
 #[derive(Clone, Copy, Debug)]
-pub struct Leak {
+pub struct OutletFace {
     /// The cell's column and row.
     pub cell: [u32; 2],
     /// The axis of the face.
     pub axis: u8,
     /// 0 at the lower end of the cell, 1 at the upper.
     pub side: u8,
-    /// By which of [`EXITS`].
+    /// By which of [`OUTLETS`].
     pub exit: u8,
 }
 
 /// Arrays that several threads write in disjoint places.
-pub(crate) struct Sheet<'a, T = f64> {
+pub(crate) struct DisjointSlice<'a, T = f64> {
     start: *mut T,
     len: usize,
     owner: PhantomData<&'a mut [T]>,
 }
 // SAFETY: a sheet is only read and written through its unsafe functions, whose callers own disjoint places.
-unsafe impl<T: Send> Sync for Sheet<'_, T> {}
-unsafe impl<T: Send> Send for Sheet<'_, T> {}
+unsafe impl<T: Send> Sync for DisjointSlice<'_, T> {}
+unsafe impl<T: Send> Send for DisjointSlice<'_, T> {}
 
-impl<'a, T> Sheet<'a, T> {
+impl<'a, T> DisjointSlice<'a, T> {
     pub(crate) fn new(values: &'a mut [T]) -> Self {
-        Sheet { start: values.as_mut_ptr(), len: values.len(), owner: PhantomData }
+        DisjointSlice { start: values.as_mut_ptr(), len: values.len(), owner: PhantomData }
     }
     /// Some of the places.
     ///
@@ -94,41 +94,41 @@ impl<'a, T> Sheet<'a, T> {
     }
 }
 
-impl Sheet<'_, f32> {
-    /// What stands from `place` on where `live` holds, `else` 0.
+impl DisjointSlice<'_, f32> {
+    /// What stands from `place` on where `mask` holds, `else` 0.
     ///
     /// # Safety
-    /// No other thread may write the places of `live` during the life of the sheet.
+    /// No other thread may write the places of `mask` during the life of the sheet.
     #[inline(always)]
-    pub(crate) unsafe fn get<L: Wide>(&self, place: usize, live: L::Mask) -> L {
+    pub(crate) unsafe fn get<L: SimdVector>(&self, place: usize, mask: L::Mask) -> L {
         debug_assert!(place + L::WIDTH <= self.len);
         // SAFETY: in bounds, and nobody else writes here.
-        unsafe { L::load_single_where(live, self.start.add(place)) }
+        unsafe { L::load_single_where(mask, self.start.add(place)) }
     }
     /// # Safety
-    /// Only one thread may use the places of `live` during the life of the sheet.
+    /// Only one thread may use the places of `mask` during the life of the sheet.
     #[inline(always)]
-    pub(crate) unsafe fn put<L: Wide>(&self, place: usize, live: L::Mask, value: L) {
+    pub(crate) unsafe fn put<L: SimdVector>(&self, place: usize, mask: L::Mask, value: L) {
         debug_assert!(place + L::WIDTH <= self.len);
         // SAFETY: in bounds, and nobody else uses these places.
-        unsafe { value.store_single_where(live, self.start.add(place)) }
+        unsafe { value.store_single_where(mask, self.start.add(place)) }
     }
 }
 
 /// Most numbers a state has (h and two momenta).
-pub const MOST_PARTS: usize = 3;
+pub const MAX_COMPONENTS: usize = 3;
 
 /// Everything it takes to compute one stage.
 #[derive(Clone, Copy)]
 pub struct Sweep<'a> {
     /// What it is computed with.
-    pub instructions: Instructions,
+    pub simd: SimdLevel,
     /// All tiles of the grid.
     pub tiles: &'a [Tile],
     /// The numbers of those that are awake.
     pub awake: &'a [u32],
     /// Those in runs.
-    pub runs: &'a [Run],
+    pub runs: &'a [TileBlock],
     /// Memory layout.
     pub layout: Layout,
     /// Cell sizes along the first axis and the last.
@@ -138,13 +138,13 @@ pub struct Sweep<'a> {
     /// The state that the forward-Euler map is applied to.
     pub from: &'a Field,
     /// The ways out.
-    pub leaks: &'a [Leak],
+    pub outlets: &'a [OutletFace],
     /// Over how many cells a step reaches.
     pub reach: usize,
     /// Step.
     pub dt: f64,
     /// Weight of what `to` holds before (Shu-Osher).
-    pub keep: f64,
+    pub rk_weight: f64,
     /// The last stage of its step.
     pub last: bool,
     /// Time at the end of the step.
@@ -158,14 +158,14 @@ impl Sweep<'_> {
         scheme: &S,
         to: &mut Field,
         maps: Option<&mut Maps>,
-        tallies: &mut [Tally],
+        tallies: &mut [TileStats],
     ) {
         assert!(to.holds::<S::State>(&self.layout) && self.from.holds::<S::State>(&self.layout));
         let mut parts = to.parts.iter_mut();
-        let to = std::array::from_fn(|_| parts.next().map(|values| Sheet::new(values)));
-        let maps = maps.map(|maps| maps.sheets());
-        let tallies = Sheet::new(&mut tallies[..self.awake.len()]);
-        self.instructions.run(Tiles::<D, S> { sweep: self, scheme, to, maps, tallies });
+        let to = std::array::from_fn(|_| parts.next().map(|values| DisjointSlice::new(values)));
+        let maps = maps.map(|maps| maps.slices());
+        let tallies = DisjointSlice::new(&mut tallies[..self.awake.len()]);
+        self.simd.run(Tiles::<D, S> { sweep: self, scheme, to, maps, tallies });
     }
 }
 
@@ -173,15 +173,15 @@ impl Sweep<'_> {
 struct Tiles<'a, const D: usize, S> {
     sweep: &'a Sweep<'a>,
     scheme: &'a S,
-    to: [Option<Sheet<'a>>; MOST_PARTS],
-    maps: Option<[Sheet<'a, f32>; 4]>,
-    tallies: Sheet<'a, Tally>,
+    to: [Option<DisjointSlice<'a>>; MAX_COMPONENTS],
+    maps: Option<[DisjointSlice<'a, f32>; 4]>,
+    tallies: DisjointSlice<'a, TileStats>,
 }
 
-impl<const D: usize, S: Scheme<D, f64>> Job for Tiles<'_, D, S> {
+impl<const D: usize, S: Scheme<D, f64>> SimdKernel for Tiles<'_, D, S> {
     type Output = ();
-    fn run<L: Wide>(self, inside: impl Inside) {
-        self.scheme.on::<L, _>(OnLanes { tiles: self, inside });
+    fn run<L: SimdVector>(self, inside: impl SimdContext) {
+        self.scheme.with_scalar::<L, _>(OnLanes { tiles: self, inside });
     }
 }
 
@@ -191,9 +191,11 @@ struct OnLanes<T, I> {
     inside: I,
 }
 
-impl<const D: usize, L: Wide, S: Scheme<D, f64>, I: Inside> Work<D, L> for OnLanes<Tiles<'_, D, S>, I> {
+impl<const D: usize, L: SimdVector, S: Scheme<D, f64>, I: SimdContext> SchemeVisitor<D, L>
+    for OnLanes<Tiles<'_, D, S>, I>
+{
     type Output = ();
-    fn with<T: Scheme<D, L>>(self, scheme: &T) {
+    fn visit<T: Scheme<D, L>>(self, scheme: &T) {
         let OnLanes { tiles: Tiles { sweep, to, maps, tallies, .. }, inside } = self;
         let Sweep { tiles, awake, runs, .. } = *sweep;
         let chunk = runs.len().div_ceil(32 * rayon::current_num_threads()).max(1);
@@ -201,8 +203,8 @@ impl<const D: usize, L: Wide, S: Scheme<D, f64>, I: Inside> Work<D, L> for OnLan
             inside.call(
                 #[inline(always)]
                 || {
-                    let mut desk = Desk::new();
-                    for Run { awake: range, across } in runs {
+                    let mut desk = Workspace::new();
+                    for TileBlock { awake: range, across } in runs {
                         let tiles = awake[range.clone()].iter().map(|number| &tiles[*number as usize]);
                         // SAFETY: every tile belongs to one run.
                         let tallies = unsafe { tallies.slice(range.clone()) };

@@ -43,7 +43,7 @@ impl<const D: usize> Grid<D> {
 pub const GHOSTS: usize = 1 + granflow_model::scheme::REACH;
 
 /// Numbers behind the last row, so that a vector can be read from every place.
-pub(crate) const ROOM: usize = 2 * crate::lanes::MOST_LANES;
+pub(crate) const PADDING: usize = 2 * crate::lanes::MAX_LANES;
 
 /// Rows of the padded arrays: x fastest, ghosts included; one row in one dimension.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -71,7 +71,7 @@ impl Layout {
     }
     /// Numbers in one padded array.
     pub fn len(&self) -> usize {
-        self.stride * (self.rows + 2 * self.margin) + ROOM
+        self.stride * (self.rows + 2 * self.margin) + PADDING
     }
     /// A layout always holds a cell.
     pub fn is_empty(&self) -> bool {

@@ -1,6 +1,6 @@
 //! What is kept of a run while it goes: the summary maps.
 
-use crate::backend::Sheet;
+use crate::backend::DisjointSlice;
 use crate::field::zeros;
 use crate::grid::Layout;
 
@@ -39,7 +39,7 @@ impl Maps {
         ]
         .into_iter()
     }
-    /// As [`Maps::named`], to keep.
+    /// As [`Maps::named`], to rk_weight.
     pub fn into_named(self) -> impl Iterator<Item = (&'static str, Vec<f32>)> {
         [
             ("peak_thickness", self.peak_thickness),
@@ -59,12 +59,12 @@ impl Maps {
         ]
         .into_iter()
     }
-    pub(crate) fn sheets(&mut self) -> [Sheet<'_, f32>; 4] {
+    pub(crate) fn slices(&mut self) -> [DisjointSlice<'_, f32>; 4] {
         [
-            Sheet::new(&mut self.peak_thickness),
-            Sheet::new(&mut self.peak_speed),
-            Sheet::new(&mut self.arrival_time),
-            Sheet::new(&mut self.stopping_time),
+            DisjointSlice::new(&mut self.peak_thickness),
+            DisjointSlice::new(&mut self.peak_speed),
+            DisjointSlice::new(&mut self.arrival_time),
+            DisjointSlice::new(&mut self.stopping_time),
         ]
     }
 }

@@ -4,15 +4,17 @@ mod traffic;
 
 pub use traffic::Traffic;
 
-use crate::backend::{EXITS, Leak, MOST_PARTS, MOST_TILES, Run, STRIP, Sweep, Tally, Tile, tile_size};
+use crate::backend::{
+    MAX_COMPONENTS, MAX_TILES, OUTLETS, OutletFace, STRIP, Sweep, Tile, TileBlock, TileStats, tile_size,
+};
 use crate::boundary;
 use crate::field::Field;
 use crate::grid::{GHOSTS, Grid, Layout};
 use crate::kernels::Kernel;
-pub use crate::lanes::Instructions;
+pub use crate::lanes::SimdLevel;
 use crate::observe::Maps;
-use granflow_model::real::{Sum, each};
-use granflow_model::scheme::{Boundary, Cell, Parts, Scheme, Spacing, Watch, Window};
+use granflow_model::real::{CompensatedSum, per_axis};
+use granflow_model::scheme::{Boundary, Cell, Components, Diagnostics, Scheme, Spacing, Stencil};
 use granflow_model::time::Stages;
 use rayon::prelude::*;
 
@@ -110,41 +112,41 @@ pub struct Simulation<const D: usize, S: Scheme<D, f64>> {
     next: Field,
     tiles: Vec<Tile>,
     across: usize,
-    leaks: Vec<Leak>,
-    instructions: Instructions,
-    tallies: Vec<Tally>,
+    outlets: Vec<OutletFace>,
+    simd: SimdLevel,
+    tallies: Vec<TileStats>,
     /// Sums over the cells of each tile, per cell measure, and which of them are out of date.
     sums: Vec<Totals>,
     unsummed: Vec<bool>,
     /// Their largest rates and speeds, by rows of tiles.
-    levels: Vec<Level>,
+    row_max: Vec<TileRowMax>,
     /// The largest rate of all.
     rate: f64,
     /// Tiles with ways out.
-    leaky: Vec<u32>,
+    with_outlets: Vec<u32>,
     /// Tiles that changed in the last step, or may yet.
-    restless: Vec<u32>,
+    active: Vec<u32>,
     awake: Vec<u32>,
-    runs: Vec<Run>,
+    runs: Vec<TileBlock>,
     /// Tiles that something can happen in, and which of them belong to no run yet.
-    stirring: Vec<u32>,
-    waiting: Vec<bool>,
-    found: Vec<Tally>,
+    frontier: Vec<u32>,
+    queued: Vec<bool>,
+    found: Vec<TileStats>,
     /// Summary maps, kept while present.
     pub maps: Option<Maps>,
     time: f64,
     step: u64,
     updates: u64,
-    out: [Sum; 5],
+    out: [CompensatedSum; 5],
     /// Volume per time that is poured in now, and what has been poured in.
     supply: f64,
-    poured: Sum,
+    poured: CompensatedSum,
     last_dt: f64,
 }
 
 /// What is largest in a row of tiles.
 #[derive(Clone, Copy, Debug, Default)]
-struct Level {
+struct TileRowMax {
     rate: f64,
     speed: f64,
     /// Not yet known.
@@ -152,7 +154,7 @@ struct Level {
 }
 
 /// How many numbers [`Simulation::clock`] has.
-pub const CLOCK: usize = 3 + 2 * EXITS.len() + 3;
+pub const CLOCK: usize = 3 + 2 * OUTLETS.len() + 3;
 
 /// The cells around one, outside a sweep.
 struct Around<'a, const D: usize, S: Scheme<D, f64>> {
@@ -160,7 +162,7 @@ struct Around<'a, const D: usize, S: Scheme<D, f64>> {
     place: usize,
 }
 
-impl<const D: usize, S: Scheme<D, f64>> Window<D, f64, S::State, S::Ground> for Around<'_, D, S> {
+impl<const D: usize, S: Scheme<D, f64>> Stencil<D, f64, S::State, S::Ground> for Around<'_, D, S> {
     fn at(&self, offset: [isize; D]) -> Cell<S::State, S::Ground> {
         let place = self.simulation.layout.moved(self.place, offset);
         Cell { state: self.simulation.now.get(place), ground: self.simulation.grounds.get(place) }
@@ -183,7 +185,7 @@ impl<const D: usize, S: Scheme<D, f64>> Simulation<D, S> {
         let layout = Layout::of(&grid);
         let mut bed = Field::zeros::<S::Ground>(&layout);
         let mut now = Field::zeros::<S::State>(&layout);
-        let index = |column: usize, row: usize| each!(k => if k == 0 { column } else { row });
+        let index = |column: usize, row: usize| per_axis!(k => if k == 0 { column } else { row });
         bed.fill(&layout, |column, row| ground(index(column, row)));
         now.fill(&layout, |column, row| initial(index(column, row)));
         boundary::fill(&mut bed, &grid, &layout, |axis, g| scheme.mirror_ground(axis, &g));
@@ -191,26 +193,26 @@ impl<const D: usize, S: Scheme<D, f64>> Simulation<D, S> {
         let mut simulation = Simulation {
             spacing: Spacing::new(grid.size),
             next: now.clone(),
-            tallies: vec![Tally::NONE; tiles.len()],
+            tallies: vec![TileStats::NONE; tiles.len()],
             sums: vec![Totals::default(); tiles.len()],
             unsummed: vec![true; tiles.len()],
-            levels: vec![Level::default(); tiles.len() / across],
+            row_max: vec![TileRowMax::default(); tiles.len() / across],
             rate: 0.0,
-            leaky: Vec::new(),
-            restless: Vec::with_capacity(tiles.len()),
+            with_outlets: Vec::new(),
+            active: Vec::with_capacity(tiles.len()),
             awake: Vec::with_capacity(tiles.len()),
             runs: Vec::with_capacity(tiles.len()),
-            stirring: Vec::with_capacity(tiles.len()),
-            waiting: vec![false; tiles.len()],
-            found: vec![Tally::NONE; tiles.len()],
+            frontier: Vec::with_capacity(tiles.len()),
+            queued: vec![false; tiles.len()],
+            found: vec![TileStats::NONE; tiles.len()],
             grounds: bed,
             maps: None,
             time: 0.0,
             step: 0,
             updates: 0,
-            out: [Sum::default(); 5],
+            out: [CompensatedSum::default(); 5],
             supply: 0.0,
-            poured: Sum::default(),
+            poured: CompensatedSum::default(),
             last_dt: 0.0,
             scheme,
             grid,
@@ -220,60 +222,60 @@ impl<const D: usize, S: Scheme<D, f64>> Simulation<D, S> {
             now,
             tiles,
             across,
-            leaks: Vec::new(),
-            instructions: Instructions::Widest,
+            outlets: Vec::new(),
+            simd: SimdLevel::Best,
         };
         simulation.wake_all();
-        simulation.look_at_grounds();
-        simulation.survey();
+        simulation.rebuild_ground_cache();
+        simulation.rescan();
         simulation
     }
 
     /// Volume per time that the grounds pour in.
     fn supplied(&self) -> f64 {
-        let mut sum = Sum::default();
+        let mut sum = CompensatedSum::default();
         for number in 0..self.grid.count() {
-            sum.add(self.scheme.supply(&self.ground(self.grid.index(number))));
+            sum.add(self.scheme.source_rate(&self.ground(self.grid.index(number))));
         }
         sum.value() * self.grid.measure()
     }
 
     /// Note what follows from the grounds: the supply, the ways out, and where the ground is everywhere the same.
-    fn look_at_grounds(&mut self) {
+    fn rebuild_ground_cache(&mut self) {
         self.supply = self.supplied();
-        self.leaks.clear();
-        self.leaky.clear();
+        self.outlets.clear();
+        self.with_outlets.clear();
         for number in 0..self.tiles.len() {
-            let from = self.leaks.len();
+            let from = self.outlets.len();
             let Tile { columns, rows, .. } = self.tiles[number];
             for j in rows[0]..rows[1] {
                 for i in columns[0]..columns[1] {
-                    self.find_leaks([i, j]);
+                    self.find_outlets([i, j]);
                 }
             }
             // Of no use where a ground is kept in single precision: see `backend::strip`.
-            let even = S::Ground::SINGLE == 0 && self.is_even(columns, rows);
+            let uniform = S::Ground::F32_MASK == 0 && self.is_uniform(columns, rows);
             let tile = &mut self.tiles[number];
-            (tile.leaks, tile.even) = (from..self.leaks.len(), even);
-            if !tile.leaks.is_empty() {
-                self.leaky.push(number as u32);
+            (tile.outlets, tile.uniform) = (from..self.outlets.len(), uniform);
+            if !tile.outlets.is_empty() {
+                self.with_outlets.push(number as u32);
             }
         }
     }
 
     /// Is the ground the same bit for bit in the cells of a tile and all that they see?
-    fn is_even(&self, columns: [usize; 2], rows: [usize; 2]) -> bool {
+    fn is_uniform(&self, columns: [usize; 2], rows: [usize; 2]) -> bool {
         let margin = self.layout.margin as isize;
         let start = |j: isize| self.layout.place(columns[0] as isize - GHOSTS as isize, j);
         let width = columns[1] - columns[0] + 2 * GHOSTS;
-        self.grounds.is_even((rows[0] as isize - margin..rows[1] as isize + margin).map(start), width)
+        self.grounds.is_uniform((rows[0] as isize - margin..rows[1] as isize + margin).map(start), width)
     }
 
     /// Note the faces of a cell that lead out of the domain.
-    fn find_leaks(&mut self, cell: [usize; 2]) {
+    fn find_outlets(&mut self, cell: [usize; 2]) {
         let place = self.layout.place(cell[0] as isize, cell[1] as isize);
         let here: S::Ground = self.grounds.get(place);
-        if self.scheme.outside(&here) {
+        if self.scheme.is_nodata(&here) {
             return;
         }
         for axis in 0..D {
@@ -285,17 +287,22 @@ impl<const D: usize, S: Scheme<D, f64>> Simulation<D, S> {
                 let step = self.layout.step(axis);
                 let there = self.grounds.get(if side == 0 { place - step } else { place + step });
                 let way = 2 * axis + side;
-                if let Some(exit) = if ends { Some(way) } else { self.scheme.exit(&here, &there, way) } {
+                if let Some(exit) = if ends { Some(way) } else { self.scheme.outlet(&here, &there, way) } {
                     let cell = cell.map(|k| k as u32);
-                    self.leaks.push(Leak { cell, axis: axis as u8, side: side as u8, exit: exit as u8 });
+                    self.outlets.push(OutletFace {
+                        cell,
+                        axis: axis as u8,
+                        side: side as u8,
+                        exit: exit as u8,
+                    });
                 }
             }
         }
     }
 
-    /// Compute with these instructions; changes no result, only what it costs.
-    pub fn use_instructions(&mut self, instructions: Instructions) {
-        self.instructions = instructions;
+    /// Compute with these simd; changes no result, only what it costs.
+    pub fn use_simd(&mut self, simd: SimdLevel) {
+        self.simd = simd;
     }
 
     /// Give every cell the ground that `change` makes of its index and its present one, and wake all.
@@ -308,7 +315,7 @@ impl<const D: usize, S: Scheme<D, f64>> Simulation<D, S> {
         }
         let (grid, layout, scheme) = (&self.grid, &self.layout, &self.scheme);
         boundary::fill(&mut self.grounds, grid, layout, |axis, g| scheme.mirror_ground(axis, &g));
-        self.look_at_grounds();
+        self.rebuild_ground_cache();
         self.wake_all();
         self.unsummed.fill(true);
     }
@@ -357,17 +364,17 @@ impl<const D: usize, S: Scheme<D, f64>> Simulation<D, S> {
         Cell { state: self.state(index), ground: self.ground(index) }
     }
     /// What the scheme watches in a cell.
-    pub fn watch(&self, index: [usize; D]) -> Watch<f64> {
-        self.scheme.watch(&self.cell(index))
+    pub fn diagnostics(&self, index: [usize; D]) -> Diagnostics<f64> {
+        self.scheme.diagnostics(&self.cell(index))
     }
-    /// Pull as a share of the static bound, [`Scheme::margin`], in every cell, x fastest.
-    pub fn margins(&mut self) -> Vec<f64> {
+    /// Pull as a share of the static bound, [`Scheme::yield_ratio`], in every cell, x fastest.
+    pub fn yield_ratios(&mut self) -> Vec<f64> {
         boundary::fill(&mut self.now, &self.grid, &self.layout, |axis, s| self.scheme.mirror(axis, &s));
         let margin = |number: usize| {
             let index = self.grid.index(number);
-            let outside = self.scheme.outside(&self.ground(index));
+            let outside = self.scheme.is_nodata(&self.ground(index));
             let around = Around { simulation: self, place: self.place(index) };
-            if outside { 0.0 } else { self.scheme.margin(&around) }
+            if outside { 0.0 } else { self.scheme.yield_ratio(&around) }
         };
         (0..self.grid.count()).into_par_iter().map(margin).collect()
     }
@@ -422,9 +429,9 @@ impl<const D: usize, S: Scheme<D, f64>> Simulation<D, S> {
     }
     /// max over cells of |change of each part of the state|/dt in the last step; infinite before the first, and after a
     /// step that was cut to less than half: a change divided by a sliver is rounding.
-    pub fn drift(&self) -> [f64; MOST_PARTS] {
+    pub fn drift(&self) -> [f64; MAX_COMPONENTS] {
         let whole = self.last_dt > 0.0 && self.last_dt > 0.5 * self.wanted_step();
-        let mut most = [0.0_f64; MOST_PARTS];
+        let mut most = [0.0_f64; MAX_COMPONENTS];
         for tally in &self.tallies {
             for (most, change) in most.iter_mut().zip(tally.change) {
                 *most = most.max(change);
@@ -435,11 +442,11 @@ impl<const D: usize, S: Scheme<D, f64>> Simulation<D, S> {
 
     /// Every cell rests by the scheme's own proof and the last step changed nothing: nothing ever will.
     pub fn at_rest(&self) -> bool {
-        self.step > 0 && self.restless.is_empty()
+        self.step > 0 && self.active.is_empty()
     }
     /// Largest speed along the bed.
     pub fn speed(&self) -> f64 {
-        self.levels.iter().fold(0.0, |most, level| level.speed.max(most))
+        self.row_max.iter().fold(0.0, |most, level| level.speed.max(most))
     }
     /// Sums over all cells, compensated and in fixed order; cells that changed since [`Simulation::take_sums`] are looked at.
     pub fn totals(&self) -> Totals {
@@ -447,7 +454,7 @@ impl<const D: usize, S: Scheme<D, f64>> Simulation<D, S> {
             if self.unsummed[number] { self.totals_of(&self.tiles[number]) } else { *sums }
         };
         let parts: Vec<Totals> = self.sums.par_iter().enumerate().map(sum).collect();
-        let (mut volume, mut film) = (Sum::default(), Sum::default());
+        let (mut volume, mut film) = (CompensatedSum::default(), CompensatedSum::default());
         let mut totals = Totals { speed: self.speed(), ..Totals::default() };
         for part in parts {
             volume.add(part.volume);
@@ -477,12 +484,12 @@ impl<const D: usize, S: Scheme<D, f64>> Simulation<D, S> {
     fn totals_of(&self, tile: &Tile) -> Totals {
         let mut totals = Totals::default();
         self.visit(tile, |cell| {
-            let watch = self.scheme.watch(cell);
+            let watch = self.scheme.diagnostics(cell);
             totals.volume += watch.volume;
             totals.film += watch.volume * watch.film;
             totals.energy += watch.energy;
             totals.wet += usize::from(watch.volume > 0.0);
-            totals.moving += usize::from(watch.square > 0.0);
+            totals.moving += usize::from(watch.speed_squared > 0.0);
         });
         totals
     }
@@ -496,7 +503,7 @@ impl<const D: usize, S: Scheme<D, f64>> Simulation<D, S> {
             let (states, grounds) = (self.now.row(start, width), self.grounds.row(start, width));
             for i in 0..width {
                 let cell = Cell { state: states.get(i), ground: grounds.get(i) };
-                if !self.scheme.outside(&cell.ground) {
+                if !self.scheme.is_nodata(&cell.ground) {
                     see(&cell);
                 }
             }
@@ -508,9 +515,9 @@ impl<const D: usize, S: Scheme<D, f64>> Simulation<D, S> {
         let mut maps = Maps::new(&self.layout);
         for number in 0..self.grid.count() {
             let index = self.grid.index(number);
-            let (place, watch) = (self.place(index), self.watch(index));
+            let (place, watch) = (self.place(index), self.diagnostics(index));
             maps.peak_thickness[place] = watch.thickness as f32;
-            maps.peak_speed[place] = watch.square.sqrt() as f32;
+            maps.peak_speed[place] = watch.speed_squared.sqrt() as f32;
             if watch.volume > 0.0 && watch.film == 0.0 {
                 maps.arrival_time[place] = self.time as f32;
             }
@@ -519,22 +526,22 @@ impl<const D: usize, S: Scheme<D, f64>> Simulation<D, S> {
     }
 
     /// Rates and speeds of the state as it stands (needed once, before the first step or after a restart).
-    fn survey(&mut self) {
-        let survey = |tile: &Tile| {
+    fn rescan(&mut self) {
+        let rescan = |tile: &Tile| {
             // Nothing is known of the change before the next step.
-            let mut tally = Tally { change: [f64::INFINITY; MOST_PARTS], ..Tally::NONE };
+            let mut tally = TileStats { change: [f64::INFINITY; MAX_COMPONENTS], ..TileStats::NONE };
             let mut square = 0.0;
             self.visit(tile, |cell| {
                 let rate = self.scheme.rate(cell, &self.spacing);
                 tally.rate = if tally.rate < rate { rate } else { tally.rate };
-                square = self.scheme.watch(cell).square.max(square);
+                square = self.scheme.diagnostics(cell).speed_squared.max(square);
             });
             tally.speed = square.sqrt();
             tally
         };
-        self.tallies = self.tiles.par_iter().map(survey).collect();
+        self.tallies = self.tiles.par_iter().map(rescan).collect();
         self.unsummed.fill(true);
-        self.levels.fill(Level { stale: true, ..Level::default() });
+        self.row_max.fill(TileRowMax { stale: true, ..TileRowMax::default() });
         self.find_rate();
     }
 
@@ -561,9 +568,9 @@ impl<const D: usize, S: Scheme<D, f64>> Simulation<D, S> {
 
     /// Find the largest rate and speed; rows in which all slept are as they were.
     fn find_rate(&mut self) {
-        for (level, tallies) in self.levels.iter_mut().zip(self.tallies.chunks(self.across)) {
+        for (level, tallies) in self.row_max.iter_mut().zip(self.tallies.chunks(self.across)) {
             if level.stale {
-                *level = Level::default();
+                *level = TileRowMax::default();
                 for tally in tallies {
                     level.rate = if level.rate < tally.rate { tally.rate } else { level.rate };
                     level.speed = level.speed.max(tally.speed);
@@ -571,80 +578,80 @@ impl<const D: usize, S: Scheme<D, f64>> Simulation<D, S> {
             }
         }
         self.rate =
-            self.levels.iter().fold(0.0, |most, level| if most < level.rate { level.rate } else { most });
+            self.row_max.iter().fold(0.0, |most, level| if most < level.rate { level.rate } else { most });
     }
 
     /// Let every tile be computed in the next step; changes no result, only what it costs.
     pub fn wake_all(&mut self) {
-        self.restless.clear();
-        self.restless.extend(0..self.tiles.len() as u32);
+        self.active.clear();
+        self.active.extend(0..self.tiles.len() as u32);
     }
 
     /// Let no tile be computed any more: the state was found to be at rest before it was saved.
     pub fn sleep_all(&mut self) {
-        self.restless.clear();
+        self.active.clear();
     }
 
     /// Number the tiles that something can happen in, in rectangles: what is next to each other in memory is computed by one
     /// thread, as long as there is enough for all of them. Costs nothing for tiles that sleep.
     fn wake(&mut self) {
         for &number in &self.awake {
-            self.tallies[number as usize].out = Tally::NONE.out;
+            self.tallies[number as usize].out = TileStats::NONE.out;
         }
-        self.find_stirring();
+        self.find_frontier();
         let across = self.across;
         let wide = across.min((STRIP - 2) / tile_size(D)[0]);
-        let high = (self.stirring.len() / (wide * 4 * rayon::current_num_threads())).clamp(1, MOST_TILES);
+        let high = (self.frontier.len() / (wide * 4 * rayon::current_num_threads())).clamp(1, MAX_TILES);
         self.awake.clear();
         self.runs.clear();
-        for &number in &self.stirring {
+        for &number in &self.frontier {
             let number = number as usize;
-            if !self.waiting[number] {
+            if !self.queued[number] {
                 continue;
             }
             let columns = wide.min(across - number % across);
             // Where the ground is the same everywhere the loops are others.
-            let even = self.tiles[number].even;
-            let alike = |waiting: &[bool], tile: usize| waiting[tile] && self.tiles[tile].even == even;
-            let width = (0..columns).take_while(|k| alike(&self.waiting, number + k)).count();
+            let uniform = self.tiles[number].uniform;
+            let alike = |queued: &[bool], tile: usize| queued[tile] && self.tiles[tile].uniform == uniform;
+            let width = (0..columns).take_while(|k| alike(&self.queued, number + k)).count();
             let from = self.awake.len();
             let mut row = number;
             for _ in 0..high {
                 let tiles = row..row + width;
-                if tiles.end > self.waiting.len() || !tiles.clone().all(|tile| alike(&self.waiting, tile)) {
+                if tiles.end > self.queued.len() || !tiles.clone().all(|tile| alike(&self.queued, tile)) {
                     break;
                 }
-                self.waiting[tiles.clone()].fill(false);
+                self.queued[tiles.clone()].fill(false);
                 self.awake.extend(tiles.map(|tile| tile as u32));
                 row += across;
             }
-            self.runs.push(Run { awake: from..self.awake.len(), across: width });
+            self.runs.push(TileBlock { awake: from..self.awake.len(), across: width });
         }
     }
 
-    /// Find the tiles that something can happen in, in order: the restless ones and those that a step reaches from them. They are marked in
-    /// `waiting`.
-    fn find_stirring(&mut self) {
+    /// Find the tiles that something can happen in, in order: the active ones and those that a step reaches from them. They are marked in
+    /// `queued`.
+    fn find_frontier(&mut self) {
         let (across, up) = (self.across, self.tiles.len() / self.across);
-        self.stirring.clear();
+        self.frontier.clear();
         let mut mark = |tile: usize| {
-            if !std::mem::replace(&mut self.waiting[tile], true) {
-                self.stirring.push(tile as u32);
+            if !std::mem::replace(&mut self.queued[tile], true) {
+                self.frontier.push(tile as u32);
             }
         };
-        for &number in &self.restless {
+        for &number in &self.active {
             let (x, y) = (number as usize % across, number as usize / across);
             mark(number as usize);
             for v in y.saturating_sub(1)..(y + 2).min(up) {
                 for u in x.saturating_sub(1)..(x + 2).min(across) {
                     let away = [u as isize - x as isize, v as isize - y as isize];
-                    if self.tallies[number as usize].stirs.reaches(away) {
+                    if self.tallies[number as usize].activity.reaches(away) {
                         mark(v * across + u);
                     }
                 }
             }
         }
-        if !self.restless.is_empty() {
+        if !self.active.is_empty() {
             // Tiles at a periodic end never sleep: their neighbours are at the other end.
             let periodic = |axis: usize| self.grid.boundary[axis][0] == Boundary::Periodic;
             if periodic(0) {
@@ -654,7 +661,7 @@ impl<const D: usize, S: Scheme<D, f64>> Simulation<D, S> {
                 (0..across).for_each(|x| [0, up - 1].into_iter().for_each(|y| mark(y * across + x)));
             }
         }
-        self.stirring.sort_unstable();
+        self.frontier.sort_unstable();
     }
 
     /// The numbers that a restart needs: time, step, updates, and the books.
@@ -679,15 +686,15 @@ impl<const D: usize, S: Scheme<D, f64>> Simulation<D, S> {
             self.step = clock[1] as u64;
             self.updates = clock[2] as u64;
             for (k, sum) in self.out.iter_mut().enumerate() {
-                *sum = Sum::from_parts([clock[3 + 2 * k], clock[4 + 2 * k]]);
+                *sum = CompensatedSum::from_parts([clock[3 + 2 * k], clock[4 + 2 * k]]);
             }
-            let end = 3 + 2 * EXITS.len();
-            self.poured = Sum::from_parts([clock[end], clock[end + 1]]);
+            let end = 3 + 2 * OUTLETS.len();
+            self.poured = CompensatedSum::from_parts([clock[end], clock[end + 1]]);
             self.last_dt = clock[end + 2];
             self.now = arrays;
             self.next = self.now.clone();
             self.wake_all();
-            self.survey();
+            self.rescan();
         }
         fits
     }
@@ -709,18 +716,18 @@ impl<const D: usize, S: Kernel<D>> Simulation<D, S> {
         if !advances {
             return Err(Failure::Collapsed { step: self.step, time: self.time, dt });
         }
-        let (courant, most) = (dt * self.rate(), self.scheme.most_courant());
+        let (courant, most) = (dt * self.rate(), self.scheme.max_courant());
         if courant > most * (1.0 + 1e-9) {
             let courant = wanted * self.rate();
             return Err(Failure::TooLong { step: self.step, time: self.time, dt: wanted, courant, most });
         }
         self.wake();
         let mut out = [0.0; 5];
-        for (stage, &keep) in self.stages.iter().enumerate() {
+        for (stage, &rk_weight) in self.stages.iter().enumerate() {
             let last = stage + 1 == self.stages.len();
             boundary::fill(&mut self.now, &self.grid, &self.layout, |axis, s| self.scheme.mirror(axis, &s));
             let sweep = Sweep {
-                instructions: self.instructions,
+                simd: self.simd,
                 tiles: &self.tiles,
                 awake: &self.awake,
                 runs: &self.runs,
@@ -730,24 +737,24 @@ impl<const D: usize, S: Kernel<D>> Simulation<D, S> {
                 from: &self.now,
                 reach: GHOSTS * self.stages.len(),
                 dt,
-                keep,
+                rk_weight,
                 last,
                 time,
-                leaks: &self.leaks,
+                outlets: &self.outlets,
             };
             let maps = if last { self.maps.as_mut() } else { None };
             self.scheme.sweep(&sweep, &mut self.next, maps, &mut self.found);
             std::mem::swap(&mut self.now, &mut self.next);
-            out = out.map(|o| o * (1.0 - keep));
+            out = out.map(|o| o * (1.0 - rk_weight));
             for (&number, found) in self.awake.iter().zip(&self.found) {
                 let tally = &mut self.tallies[number as usize];
-                let stirs = if stage == 0 { found.stirs } else { found.stirs.or(tally.stirs) };
-                *tally = Tally { stirs, ..*found };
+                let activity = if stage == 0 { found.activity } else { found.activity.or(tally.activity) };
+                *tally = TileStats { activity, ..*found };
             }
             // In the order of the tiles, whatever runs they were computed in.
-            for &number in &self.leaky {
+            for &number in &self.with_outlets {
                 for (sum, part) in out.iter_mut().zip(self.tallies[number as usize].out) {
-                    *sum += (1.0 - keep) * part;
+                    *sum += (1.0 - rk_weight) * part;
                 }
             }
         }
@@ -759,17 +766,17 @@ impl<const D: usize, S: Kernel<D>> Simulation<D, S> {
             sum.add(part);
         }
         let mut finite = true;
-        self.restless.clear();
+        self.active.clear();
         for &number in &self.awake {
             let tile = &self.tiles[number as usize];
             let cells = (tile.columns[1] - tile.columns[0]) * (tile.rows[1] - tile.rows[0]);
             self.updates += (cells * self.stages.len()) as u64;
             let tally = &self.tallies[number as usize];
             finite &= tally.rate < f64::INFINITY;
-            self.levels[number as usize / self.across].stale = true;
+            self.row_max[number as usize / self.across].stale = true;
             self.unsummed[number as usize] = true;
-            if tally.stirs.anywhere {
-                self.restless.push(number);
+            if tally.activity.anywhere {
+                self.active.push(number);
             }
         }
         self.find_rate();
@@ -779,7 +786,7 @@ impl<const D: usize, S: Kernel<D>> Simulation<D, S> {
 
 impl<const D: usize, S: Scheme<D, f64>> Simulation<D, S> {
     /// Give back what only steps need, for there will be none, or none before [`Simulation::restore`].
-    pub fn close(&mut self) {
+    pub fn release_buffers(&mut self) {
         self.next = Field::default();
     }
     /// The summary maps by name, x fastest, each copied when all else and those before it are given back.
@@ -802,7 +809,7 @@ fn cut(layout: &Layout) -> (Vec<Tile>, usize) {
     let mut tiles = Vec::new();
     for rows in ends(layout.rows, height) {
         for columns in ends(layout.columns, width) {
-            tiles.push(Tile { columns, rows, leaks: 0..0, even: false });
+            tiles.push(Tile { columns, rows, outlets: 0..0, uniform: false });
         }
     }
     (tiles, across)

@@ -44,7 +44,7 @@ impl<const D: usize> Site<D> {
             cells: self.table.nodes(),
             origin: self.origin,
             size: self.size,
-            boundary: [[Boundary::Nothing; 2]; D],
+            boundary: [[Boundary::Absorbing; 2]; D],
         }
     }
 

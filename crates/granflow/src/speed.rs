@@ -11,7 +11,7 @@ pub use setups::{Extent, SETUPS, Setup};
 pub use triad::Triad;
 
 use crate::kernels::Kernel;
-use crate::simulation::{Failure, Instructions, Simulation, Traffic};
+use crate::simulation::{Failure, SimdLevel, Simulation, Traffic};
 use granflow_engine::Field;
 
 /// A run to be measured, of whatever scheme.
@@ -33,7 +33,7 @@ pub trait Load: Send {
     /// What a step of every cell asks of the memory.
     fn traffic(&self) -> Traffic;
     /// Compute with these instructions.
-    fn use_instructions(&mut self, instructions: Instructions);
+    fn use_simd(&mut self, instructions: SimdLevel);
 }
 
 /// A run and how it began.
@@ -85,8 +85,8 @@ impl<const D: usize, S: Kernel<D>> Load for Begun<D, S> {
     fn traffic(&self) -> Traffic {
         self.run.traffic()
     }
-    fn use_instructions(&mut self, instructions: Instructions) {
-        self.run.use_instructions(instructions);
+    fn use_simd(&mut self, instructions: SimdLevel) {
+        self.run.use_simd(instructions);
     }
 }
 

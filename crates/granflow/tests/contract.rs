@@ -12,8 +12,8 @@ use granflow::savage_hutter::ground::{Bed, Chute, Terrain};
 use granflow::savage_hutter::kinetic::{
     Kinetic, VERFAHREN_1, VERFAHREN_2, VERFAHREN_3, VERFAHREN_4, VERFAHREN_5,
 };
-use granflow::scheme::{Boundary, Cell, Faces, Parts, Spacing, Window};
-use granflow::simulation::{Failure, Instructions, Simulation, StepSize};
+use granflow::scheme::{Boundary, Cell, Components, Faces, Spacing, Stencil};
+use granflow::simulation::{Failure, SimdLevel, Simulation, StepSize};
 use granflow::site::Site;
 use granflow::time::{EULER, SSP_RK2, Stages};
 use proptest::prelude::*;
@@ -79,7 +79,7 @@ struct Alike<const D: usize, S, G> {
     spacing: Spacing<D, f64>,
 }
 
-impl<const D: usize, S: Copy, G: Copy> Window<D, f64, S, G> for Alike<D, S, G> {
+impl<const D: usize, S: Copy, G: Copy> Stencil<D, f64, S, G> for Alike<D, S, G> {
     fn at(&self, _offset: [isize; D]) -> Cell<S, G> {
         self.here
     }
@@ -100,7 +100,7 @@ impl Consistency {
     ) -> Flow<D, f64> {
         let spacing = Spacing::new([1.0; D]);
         let around = |state| Alike { here: Cell { state, ground }, spacing };
-        let edges = |state| scheme.reconstruct(&around(state), &scheme.prime(&Cell { state, ground }));
+        let edges = |state| scheme.reconstruct(&around(state), &scheme.primitives(&Cell { state, ground }));
         let (wet, dry) = (edges(state), edges(Flow::still(0.0)));
         let corners = [[scheme.corner([[&wet; 2]; 2]); 2]; 2];
         let idle: [Faces<S::Flux>; D] =
@@ -153,7 +153,7 @@ fn flux_of_equal_states_is_the_flux_of_the_equation() {
     every::<1>(0.0, &Consistency);
     every::<2>(0.0, &Consistency);
     let slopes = |z: f64, slope| {
-        let cell = grid([1, 1], [0.0, 0.0], 1.0, Boundary::Nothing);
+        let cell = grid([1, 1], [0.0, 0.0], 1.0, Boundary::Absorbing);
         terrain(&cell, |_| Some(Surface { z, slope, bent: [[0.0; 2]; 2] }))[0]
     };
     for order in ORDERS {
@@ -527,7 +527,7 @@ fn mass_is_kept_and_what_leaves_is_booked() {
 
 /// A pile on bumpy ground that runs out and stops; nodata in one corner, and room beside it for tiles to sleep in.
 fn avalanche(order: Order) -> support::Run<2, Terrain<2, f64>> {
-    let sheet = grid([83, 125], [0.0, -64.0], 2.0, Boundary::Nothing);
+    let sheet = grid([83, 125], [0.0, -64.0], 2.0, Boundary::Absorbing);
     let bed = bumps(5);
     let grounds = terrain(&sheet, |[x, y]| {
         if x + y > 250.0 {
@@ -570,12 +570,12 @@ fn finds_what_is_no_number<const D: usize, S: Kernel<D>>(
     build: impl Fn() -> Simulation<D, S>,
     cell: [usize; D],
 ) {
-    for instructions in [Instructions::Scalar, Instructions::Narrow, Instructions::Widest] {
-        for (part, bad) in (0..<S::State as Parts<f64>>::COUNT)
+    for instructions in [SimdLevel::Scalar, SimdLevel::Avx2, SimdLevel::Best] {
+        for (part, bad) in (0..<S::State as Components<f64>>::COUNT)
             .flat_map(|part| [f64::NAN, f64::INFINITY].map(|bad| (part, bad)))
         {
             let mut run = build();
-            run.use_instructions(instructions);
+            run.use_simd(instructions);
             assert!(run.advance(f64::INFINITY).is_ok(), "{name}");
             let mut arrays = run.arrays().clone();
             arrays.parts[part][run.place(cell)] = bad;

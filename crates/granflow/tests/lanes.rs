@@ -12,8 +12,8 @@ use granflow::savage_hutter::friction::{Coulomb, Law, SamosAt, Voellmy};
 use granflow::savage_hutter::kinetic::{
     Kinetic, VERFAHREN_1, VERFAHREN_2, VERFAHREN_3, VERFAHREN_4, VERFAHREN_5,
 };
-use granflow::scheme::{Boundary, Parts};
-use granflow::simulation::{Instructions, Simulation, StepSize};
+use granflow::scheme::{Boundary, Components};
+use granflow::simulation::{SimdLevel, Simulation, StepSize};
 use granflow::time::{EULER, SSP_RK2};
 use support::{Dice, Surface, alone, grid, plane, terrain};
 
@@ -21,7 +21,7 @@ use support::{Dice, Surface, alone, grid, plane, terrain};
 fn bits<const D: usize, S: Kernel<D>>(run: &Simulation<D, S>) -> Vec<u64> {
     let mut numbers = Vec::new();
     for cell in run.collect(|cell| cell.state) {
-        cell.scatter(|_, value| numbers.push(value));
+        cell.store(|_, value| numbers.push(value));
     }
     let totals = run.totals();
     numbers.extend([totals.volume, totals.film, totals.speed, totals.energy, run.rate()]);
@@ -40,9 +40,9 @@ fn compare<const D: usize, S: Kernel<D>>(name: &str, build: impl Fn() -> Simulat
         let mut scalar = build();
         let mut narrow = build();
         let mut widest = build();
-        narrow.use_instructions(Instructions::Narrow);
-        widest.use_instructions(Instructions::Widest);
-        scalar.use_instructions(Instructions::Scalar);
+        narrow.use_simd(SimdLevel::Avx2);
+        widest.use_simd(SimdLevel::Best);
+        scalar.use_simd(SimdLevel::Scalar);
         for step in 0..12 {
             for run in [&mut scalar, &mut narrow, &mut widest] {
                 if step == 0 {
@@ -123,7 +123,7 @@ fn lanes_are_the_scalar_on_planes() {
 }
 
 fn on_terrain(name: &str, friction: Law) {
-    let sheet: Grid<2> = grid([101, 43], [0.0; 2], 5.0, Boundary::Nothing);
+    let sheet: Grid<2> = grid([101, 43], [0.0; 2], 5.0, Boundary::Absorbing);
     let grounds = terrain(&sheet, |[x, y]| {
         let outside = (x - 300.0).hypot(y - 90.0) < 22.0 || x + y < 60.0;
         (!outside).then(|| {
@@ -164,7 +164,7 @@ fn lanes_are_the_scalar_on_terrain() {
 
 /// On a bed of waves this high.
 fn on_tables<const D: usize>(cells: [usize; D], waves: f64) {
-    let table = grid(cells, [0.0; D], 0.02, Boundary::Nothing);
+    let table = grid(cells, [0.0; D], 0.02, Boundary::Absorbing);
     // A hole, a wall, a source on one side; where the bed is even, a hole so large that tiles lie in it.
     let wide = if waves == 0.0 { [34, 40] } else { [1, 1] };
     let ground = |index: [usize; D]| {

@@ -63,7 +63,7 @@ impl<const D: usize> Setting<D> {
             cells: self.table.nodes(),
             origin: [0.0; D],
             size: self.size,
-            boundary: [[Boundary::Nothing; 2]; D],
+            boundary: [[Boundary::Absorbing; 2]; D],
         };
         Simulation::new(scheme, grid, stages, step, |index| self.ground(index, 1.0), state)
     }

@@ -97,7 +97,7 @@ fn run(name: &str, plane: Plane, full: &[f64], files: &[FileKind]) -> Finished {
         .collect();
     table.blank(&mut rolling);
     let mut frames = Frames::create(&directory.join("frames.bin"), Precision::F64, plane.series()).unwrap();
-    let mut ledger = Ledger::create(&directory.join("mass.csv"), plane.exits()).unwrap();
+    let mut ledger = Ledger::create(&directory.join("mass.csv"), plane.outlets()).unwrap();
     for (k, time) in TIMES.into_iter().enumerate() {
         let mut standing: Vec<f64> = full.iter().map(|u| u * (time / TIMES[3]).sqrt()).collect();
         table.blank(&mut standing);

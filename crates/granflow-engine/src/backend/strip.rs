@@ -1,65 +1,65 @@
 //! The inner loop: a strip of a tile, row by row, vector by vector.
 
 use super::scratch::{Row, Scratch};
-use super::tally::{Count, Tally};
-use super::{EXITS, Leak, MOST_PARTS, Sheet, Sweep, Tile};
-use crate::field::{MOST, has};
+use super::tally::{TileReducer, TileStats};
+use super::{DisjointSlice, MAX_COMPONENTS, OUTLETS, OutletFace, Sweep, Tile};
+use crate::field::{MAX, has};
 use crate::grid::Layout;
-use crate::lanes::{Wide, expect};
-use granflow_model::real::each;
-use granflow_model::scheme::{Cell, Faces, Parts, Scheme, Side, Spacing, Watch, Window};
+use crate::lanes::{SimdVector, prefetch};
+use granflow_model::real::per_axis;
+use granflow_model::scheme::{Cell, Components, Diagnostics, Faces, Scheme, Side, Spacing, Stencil};
 
-/// Tiles under way, on ground that is everywhere the same (`EVEN`) or not. All by value: what the inner loop reads through a
+/// Tiles under way, on ground that is everywhere the same (`UNIFORM`) or not. All by value: what the inner loop reads through a
 /// reference it would have to read anew after every number that it writes.
-struct Strip<'a, const D: usize, const EVEN: bool, L: Wide, T: Scheme<D, L>> {
+struct Strip<'a, const D: usize, const UNIFORM: bool, L: SimdVector, T: Scheme<D, L>> {
     layout: Layout,
     scheme: T,
     /// Where the numbers of the states and of the grounds begin.
-    from: [*const u8; MOST],
-    grounds: [*const u8; MOST],
-    /// The ground where it is even, else of one of the cells.
-    even: T::Ground,
-    to: [*mut f64; MOST_PARTS],
-    maps: Option<&'a [Sheet<'a, f32>; 4]>,
-    leaks: &'a [Leak],
+    from: [*const u8; MAX],
+    grounds: [*const u8; MAX],
+    /// The ground where it is uniform, else of one of the cells.
+    uniform: T::Ground,
+    to: [*mut f64; MAX_COMPONENTS],
+    maps: Option<&'a [DisjointSlice<'a, f32>; 4]>,
+    outlets: &'a [OutletFace],
     spacing: Spacing<D, L>,
     reach: usize,
     dt: L,
-    keep: f64,
+    rk_weight: f64,
     last: bool,
     time: f64,
 }
 
 /// What the tiles of one thread are computed with.
-pub(super) struct Desk {
+pub(super) struct Workspace {
     scratch: Scratch,
-    count: Count,
+    count: TileReducer,
 }
 
-impl Desk {
+impl Workspace {
     #[inline(always)]
     pub(super) fn new() -> Self {
-        Desk { scratch: Scratch::new(), count: Count::new() }
+        Workspace { scratch: Scratch::new(), count: TileReducer::new() }
     }
 }
 
 /// The cells of a strip that are updated side by side.
-struct Vector<L: Wide> {
+struct Vector<L: SimdVector> {
     /// The first one's column in the strip, and its place in the field.
     column: usize,
     place: usize,
-    /// Which of them are ours.
-    live: L::Mask,
+    /// Which of them are in_strip.
+    mask: L::Mask,
 }
 
 /// The cells around one and around those that share its vector.
-struct Around<'a, const D: usize, const EVEN: bool, L: Wide, T: Scheme<D, L>> {
-    strip: &'a Strip<'a, D, EVEN, L, T>,
+struct Around<'a, const D: usize, const UNIFORM: bool, L: SimdVector, T: Scheme<D, L>> {
+    strip: &'a Strip<'a, D, UNIFORM, L, T>,
     place: usize,
 }
 
-impl<const D: usize, const EVEN: bool, L: Wide, T: Scheme<D, L>> Window<D, L, T::State, T::Ground>
-    for Around<'_, D, EVEN, L, T>
+impl<const D: usize, const UNIFORM: bool, L: SimdVector, T: Scheme<D, L>> Stencil<D, L, T::State, T::Ground>
+    for Around<'_, D, UNIFORM, L, T>
 {
     #[inline(always)]
     fn at(&self, offset: [isize; D]) -> Cell<T::State, T::Ground> {
@@ -73,19 +73,19 @@ impl<const D: usize, const EVEN: bool, L: Wide, T: Scheme<D, L>> Window<D, L, T:
 
 /// Compute a rectangle of tiles, `across` side by side, row by row; leave a tally each.
 #[inline(always)]
-pub(super) fn run<'a, 't, const D: usize, L: Wide, T: Scheme<D, L>, S: Scheme<D, f64>>(
+pub(super) fn run<'a, 't, const D: usize, L: SimdVector, T: Scheme<D, L>, S: Scheme<D, f64>>(
     sweep: &Sweep<'a>,
     scheme: &T,
     tiles: impl Iterator<Item = &'t Tile> + Clone,
     across: usize,
-    to: (&[Option<Sheet>; MOST_PARTS], Option<&'a [Sheet<'a, f32>; 4]>),
-    tallies: &mut [Tally],
-    Desk { scratch, count }: &mut Desk,
+    to: (&[Option<DisjointSlice>; MAX_COMPONENTS], Option<&'a [DisjointSlice<'a, f32>; 4]>),
+    tallies: &mut [TileStats],
+    Workspace { scratch, count }: &mut Workspace,
 ) {
-    const { assert!(T::State::COUNT <= MOST_PARTS && T::Ground::COUNT <= MOST) };
-    // Mountains, which are kept in single precision, are seldom even, and one cell at a time is slow anyway: no loops are
+    const { assert!(T::State::COUNT <= MAX_COMPONENTS && T::Ground::COUNT <= MAX) };
+    // Mountains, which are kept in single precision, are seldom uniform, and one cell at a time is slow anyway: no loops are
     // compiled for them.
-    if const { S::Ground::SINGLE == 0 && L::WIDTH > 1 } && tiles.clone().all(|tile| tile.even) {
+    if const { S::Ground::F32_MASK == 0 && L::WIDTH > 1 } && tiles.clone().all(|tile| tile.uniform) {
         let strip = Strip::<D, true, L, T>::new::<S>(sweep, scheme, tiles.clone(), to);
         strip.sweep(tiles, across, tallies, scratch, count);
     } else {
@@ -94,38 +94,38 @@ pub(super) fn run<'a, 't, const D: usize, L: Wide, T: Scheme<D, L>, S: Scheme<D,
     }
 }
 
-impl<'a, const D: usize, const EVEN: bool, L: Wide, T: Scheme<D, L>> Strip<'a, D, EVEN, L, T> {
+impl<'a, const D: usize, const UNIFORM: bool, L: SimdVector, T: Scheme<D, L>> Strip<'a, D, UNIFORM, L, T> {
     #[inline(always)]
     fn new<'t, S: Scheme<D, f64>>(
         sweep: &Sweep<'a>,
         scheme: &T,
         mut tiles: impl Iterator<Item = &'t Tile>,
-        (to, maps): (&[Option<Sheet>; MOST_PARTS], Option<&'a [Sheet<'a, f32>; 4]>),
+        (to, maps): (&[Option<DisjointSlice>; MAX_COMPONENTS], Option<&'a [DisjointSlice<'a, f32>; 4]>),
     ) -> Self {
         let corner = tiles.next().map_or([0; 2], |tile| [tile.columns[0], tile.rows[0]]);
         let place = sweep.layout.place(corner[0] as isize, corner[1] as isize);
-        let mut parts = [0.0; MOST];
-        sweep.grounds.get::<S::Ground>(place).scatter(
+        let mut parts = [0.0; MAX];
+        sweep.grounds.get::<S::Ground>(place).store(
             #[inline(always)]
             |k, part| parts[k] = part,
         );
-        let even = T::Ground::gather(
+        let uniform = T::Ground::load(
             #[inline(always)]
-            |k| L::of(parts[k]),
+            |k| L::splat(parts[k]),
         );
         Strip {
             layout: sweep.layout,
             scheme: *scheme,
             from: sweep.from.starts::<S::State>(),
             grounds: sweep.grounds.starts::<S::Ground>(),
-            even,
+            uniform,
             to: to.each_ref().map(|sheet| sheet.as_ref().map_or(std::ptr::null_mut(), |sheet| sheet.start)),
             maps,
-            leaks: sweep.leaks,
-            spacing: Spacing::new(each!(k => sweep.size[k])),
+            outlets: sweep.outlets,
+            spacing: Spacing::new(per_axis!(k => sweep.size[k])),
             reach: sweep.reach,
-            dt: L::of(sweep.dt),
-            keep: sweep.keep,
+            dt: L::splat(sweep.dt),
+            rk_weight: sweep.rk_weight,
             last: sweep.last,
             time: sweep.time,
         }
@@ -135,7 +135,7 @@ impl<'a, const D: usize, const EVEN: bool, L: Wide, T: Scheme<D, L>> Strip<'a, D
     fn cell(&self, place: usize) -> Cell<T::State, T::Ground> {
         // SAFETY: the tiles and their ghosts lie inside the layout, which ends with room for a vector.
         let state = unsafe {
-            T::State::gather(
+            T::State::load(
                 #[inline(always)]
                 |k| L::load(self.from.get_unchecked(k).cast::<f64>().add(place)),
             )
@@ -145,18 +145,18 @@ impl<'a, const D: usize, const EVEN: bool, L: Wide, T: Scheme<D, L>> Strip<'a, D
 
     #[inline(always)]
     fn ground(&self, place: usize) -> T::Ground {
-        if EVEN {
-            return self.even;
+        if UNIFORM {
+            return self.uniform;
         }
         // SAFETY: as in `cell`.
         unsafe {
-            T::Ground::gather(
+            T::Ground::load(
                 #[inline(always)]
                 |k| {
                     let start = *self.grounds.get_unchecked(k);
-                    if has(T::Ground::SHARED, k) {
-                        L::of(*start.cast())
-                    } else if has(T::Ground::SINGLE, k) {
+                    if has(T::Ground::UNIFORM_MASK, k) {
+                        L::splat(*start.cast())
+                    } else if has(T::Ground::F32_MASK, k) {
                         L::load_single(start.cast::<f32>().add(place))
                     } else {
                         L::load(start.cast::<f64>().add(place))
@@ -172,21 +172,21 @@ impl<'a, const D: usize, const EVEN: bool, L: Wide, T: Scheme<D, L>> Strip<'a, D
         &self,
         tiles: impl Iterator<Item = &'t Tile> + Clone,
         across: usize,
-        tallies: &mut [Tally],
+        tallies: &mut [TileStats],
         scratch: &mut Scratch,
-        count: &mut Count,
+        count: &mut TileReducer,
     ) {
         let (Some(lowest), Some(highest)) = (tiles.clone().next(), tiles.clone().last()) else { return };
         let columns = [lowest.columns[0], highest.columns[1]];
         let (first, end) = (lowest.rows[0] as isize, highest.rows[1] as isize);
-        let none = EVEN && L::any(self.scheme.outside(&self.ground(0)));
+        let none = UNIFORM && L::any(self.scheme.is_nodata(&self.ground(0)));
         for m in Self::vectors(columns) {
-            let ours = if none { 0 } else { ((1_u128 << (columns[1] - columns[0])) - 1) << 1 };
-            scratch.ours[m / L::WIDTH] = (ours >> m) as u16;
+            let in_strip = if none { 0 } else { ((1_u128 << (columns[1] - columns[0])) - 1) << 1 };
+            scratch.in_strip[m / L::WIDTH] = (in_strip >> m) as u16;
         }
-        let leak = tiles.clone().any(|tile| !tile.leaks.is_empty());
+        let outlet = tiles.clone().any(|tile| !tile.outlets.is_empty());
         for tally in &mut *tallies {
-            tally.out = Tally::NONE.out;
+            tally.out = TileStats::NONE.out;
         }
         // The row of tiles that is under way, and the place of its tallies.
         let (mut level, mut from) = (tiles.clone(), 0);
@@ -199,13 +199,13 @@ impl<'a, const D: usize, const EVEN: bool, L: Wide, T: Scheme<D, L>> Strip<'a, D
                 continue;
             }
             self.across(columns, number, first, scratch);
-            if leak {
+            if outlet {
                 for (tile, k) in level.clone().take(across).zip(from..) {
                     self.book(&mut tallies[k].out, tile, columns, j, scratch, false);
                 }
             }
             self.update_row(columns, number, first, scratch, count);
-            if leak {
+            if outlet {
                 for (tile, k) in level.clone().take(across).zip(from..) {
                     self.book(&mut tallies[k].out, tile, columns, j, scratch, true);
                 }
@@ -216,7 +216,7 @@ impl<'a, const D: usize, const EVEN: bool, L: Wide, T: Scheme<D, L>> Strip<'a, D
                 for (tile, k) in level.clone().take(across).zip(from..) {
                     let [start, end] = tile.columns.map(|i| i - columns[0] + 1);
                     let found = count.finish(start..end, top - bottom, self.reach);
-                    tallies[k] = Tally { out: tallies[k].out, ..found };
+                    tallies[k] = TileStats { out: tallies[k].out, ..found };
                 }
                 level.by_ref().take(across).for_each(drop);
                 from += across;
@@ -225,7 +225,7 @@ impl<'a, const D: usize, const EVEN: bool, L: Wide, T: Scheme<D, L>> Strip<'a, D
     }
 
     /// Numbers of a row that are computed: the cells of the strip with a neighbour at both ends, filled up to whole vectors
-    /// with cells that are not ours.
+    /// with cells that are not in_strip.
     #[inline(always)]
     fn end(columns: [usize; 2]) -> usize {
         (columns[1] - columns[0] + 2).next_multiple_of(L::WIDTH)
@@ -247,35 +247,35 @@ impl<'a, const D: usize, const EVEN: bool, L: Wide, T: Scheme<D, L>> Strip<'a, D
         let above = &mut scratch.edges[(number - first + 2) as usize % 2];
         let place = self.start(columns, number);
         // One vector ahead: its roots and divisions are under way while this one's sums are formed.
-        let mut prime = self.scheme.prime(&self.cell(place));
+        let mut prime = self.scheme.primitives(&self.cell(place));
         for m in Self::vectors(columns) {
-            self.expect(place + m);
-            let next = self.scheme.prime(&self.cell(place + m + L::WIDTH));
+            self.prefetch_rows(place + m);
+            let next = self.scheme.primitives(&self.cell(place + m + L::WIDTH));
             above.put(m, self.scheme.reconstruct(&Around { strip: self, place: place + m }, &prime));
             prime = next;
         }
-        above.mend(if number <= first { T::Edges::COUNT } else { 0 }, Self::end(columns));
+        above.fill_halo(if number <= first { T::FaceStates::COUNT } else { 0 }, Self::end(columns));
     }
 
     /// Ask for what will be read a row above `place` and written at it: the rows of a strip are too short for the processor to
     /// notice by itself where the next one begins.
     #[inline(always)]
-    fn expect(&self, place: usize) {
+    fn prefetch_rows(&self, place: usize) {
         /// Numbers in a line of the cache.
         const LINE: usize = 8;
         let above = place + self.layout.stride;
         for m in (0..L::WIDTH).step_by(LINE) {
             for k in 0..T::State::COUNT {
-                expect(self.from[k].cast::<f64>().wrapping_add(above + m).cast());
-                expect(self.to[k].wrapping_add(place + m).cast());
+                prefetch(self.from[k].cast::<f64>().wrapping_add(above + m).cast());
+                prefetch(self.to[k].wrapping_add(place + m).cast());
             }
-            if !EVEN {
+            if !UNIFORM {
                 for k in 0..T::Ground::COUNT {
                     let start = self.grounds[k];
-                    if has(T::Ground::SINGLE, k) {
-                        expect(start.cast::<f32>().wrapping_add(above + m).cast());
-                    } else if !has(T::Ground::SHARED, k) {
-                        expect(start.cast::<f64>().wrapping_add(above + m).cast());
+                    if has(T::Ground::F32_MASK, k) {
+                        prefetch(start.cast::<f32>().wrapping_add(above + m).cast());
+                    } else if !has(T::Ground::UNIFORM_MASK, k) {
+                        prefetch(start.cast::<f64>().wrapping_add(above + m).cast());
                     }
                 }
             }
@@ -289,7 +289,7 @@ impl<'a, const D: usize, const EVEN: bool, L: Wide, T: Scheme<D, L>> Strip<'a, D
         let Scratch { edges, across, corners, .. } = scratch;
         let end = Self::end(columns);
         if number <= first {
-            across.mend(T::Flux::COUNT, end);
+            across.fill_halo(T::Flux::COUNT, end);
         }
         let above = &edges[(number - first) as usize % 2];
         let row = if D > 1 { &edges[(number - first + 1) as usize % 2] } else { above };
@@ -299,17 +299,17 @@ impl<'a, const D: usize, const EVEN: bool, L: Wide, T: Scheme<D, L>> Strip<'a, D
             let at = m as isize;
             // SAFETY: both rows have been put and mended.
             unsafe {
-                let (left, right): (T::Edges, T::Edges) = (row.get(at - 1), row.get(at));
+                let (left, right): (T::FaceStates, T::FaceStates) = (row.get(at - 1), row.get(at));
                 if updates {
                     across.put(m, self.scheme.flux(0, &left, &right));
                 }
                 if T::Corner::COUNT > 0 {
-                    let (below, above): (T::Edges, T::Edges) = (above.get(at - 1), above.get(at));
+                    let (below, above): (T::FaceStates, T::FaceStates) = (above.get(at - 1), above.get(at));
                     high.put(m, self.scheme.corner([[&left, &right], [&below, &above]]));
                 }
             }
         }
-        high.mend(T::Corner::COUNT, end);
+        high.fill_halo(T::Corner::COUNT, end);
     }
 
     /// Find what passes the faces along y between row `number` and the one below, and update that (in one dimension the
@@ -321,9 +321,9 @@ impl<'a, const D: usize, const EVEN: bool, L: Wide, T: Scheme<D, L>> Strip<'a, D
         number: isize,
         first: isize,
         scratch: &mut Scratch,
-        count: &mut Count,
+        count: &mut TileReducer,
     ) {
-        let Scratch { edges, across, below, corners, fresh, ours, .. } = scratch;
+        let Scratch { edges, across, below, corners, updated, in_strip, .. } = scratch;
         let above = &edges[(number - first) as usize % 2];
         let row = if D > 1 { &edges[(number - first + 1) as usize % 2] } else { above };
         let high = &corners[(number - first) as usize % 2];
@@ -337,7 +337,7 @@ impl<'a, const D: usize, const EVEN: bool, L: Wide, T: Scheme<D, L>> Strip<'a, D
             // SAFETY: all rows have been put and mended, `below` in the row before (in the first row of a rectangle it and `across`
             // hold anything, and what is made of that is not used); a strip has at most STRIP cells.
             unsafe {
-                let edges: T::Edges = row.get(at);
+                let edges: T::FaceStates = row.get(at);
                 let mut faces = [Faces { lo: across.get(at), hi: across.get(at + 1) }; D];
                 if D > 1 {
                     let up = self.scheme.flux(D - 1, &edges, &above.get(at));
@@ -346,23 +346,23 @@ impl<'a, const D: usize, const EVEN: bool, L: Wide, T: Scheme<D, L>> Strip<'a, D
                 }
                 if updates {
                     if m > 0 {
-                        self.watch(m - L::WIDTH, place, fresh, before, count);
+                        self.diagnostics(m - L::WIDTH, place, updated, before, count);
                     }
-                    let mut live = L::from_bits(u64::from(*ours.get_unchecked(m / L::WIDTH)));
-                    if !EVEN {
-                        live = live & !self.scheme.outside(&self.ground(place + m));
+                    let mut mask = L::from_bits(u64::from(*in_strip.get_unchecked(m / L::WIDTH)));
+                    if !UNIFORM {
+                        mask = mask & !self.scheme.is_nodata(&self.ground(place + m));
                     }
-                    before = live;
-                    if L::any(live) {
+                    before = mask;
+                    if L::any(mask) {
                         let corners = [[low.get(at), low.get(at + 1)], [high.get(at), high.get(at + 1)]];
-                        let vector = Vector { column: m, place: place + m, live };
-                        fresh.put(m, self.update(count, vector, &edges, &faces, &corners));
+                        let vector = Vector { column: m, place: place + m, mask };
+                        updated.put(m, self.update(count, vector, &edges, &faces, &corners));
                     }
                 }
             }
         }
         if updates {
-            self.watch(Self::end(columns) - L::WIDTH, place, fresh, before, count);
+            self.diagnostics(Self::end(columns) - L::WIDTH, place, updated, before, count);
         }
     }
 
@@ -373,9 +373,9 @@ impl<'a, const D: usize, const EVEN: bool, L: Wide, T: Scheme<D, L>> Strip<'a, D
     #[inline(always)]
     unsafe fn update(
         &self,
-        count: &mut Count,
-        Vector { column, place, live }: Vector<L>,
-        edges: &T::Edges,
+        count: &mut TileReducer,
+        Vector { column, place, mask }: Vector<L>,
+        edges: &T::FaceStates,
         faces: &[Faces<T::Flux>; D],
         corners: &[[T::Corner; 2]; 2],
     ) -> T::State {
@@ -383,93 +383,106 @@ impl<'a, const D: usize, const EVEN: bool, L: Wide, T: Scheme<D, L>> Strip<'a, D
         let here = self.cell(place);
         let mut new = self.scheme.update(&Around { strip: self, place }, edges, faces, corners, self.dt);
         let mut old = here.state;
-        if self.keep > 0.0 {
+        if self.rk_weight > 0.0 {
             // SAFETY: as the caller promises.
-            old = T::State::gather(
+            old = T::State::load(
                 #[inline(always)]
-                |k| unsafe { L::load_where(live, self.to[k].add(place)) },
+                |k| unsafe { L::load_where(mask, self.to[k].add(place)) },
             );
-            new = self.scheme.average(L::of(self.keep), &old, &new);
+            new = self.scheme.rk_combine(L::splat(self.rk_weight), &old, &new);
         }
-        let (mut before, mut input) = ([zero; MOST_PARTS], [zero; MOST_PARTS]);
-        old.scatter(
+        let (mut before, mut input) = ([zero; MAX_COMPONENTS], [zero; MAX_COMPONENTS]);
+        old.store(
             #[inline(always)]
             |k, value| before[k] = value,
         );
-        here.state.scatter(
+        here.state.store(
             #[inline(always)]
             |k, value| input[k] = value,
         );
-        new.scatter(
+        new.store(
             #[inline(always)]
             |k, value| {
                 // SAFETY: as the caller promises.
-                unsafe { value.store_where(live, self.to[k].add(place)) };
-                if self.last && T::DRIFTS {
-                    count.change(k, column, live, (value - before[k]).abs());
+                unsafe { value.store_where(mask, self.to[k].add(place)) };
+                if self.last && T::TRACKS_CHANGE {
+                    count.change(k, column, mask, (value - before[k]).abs());
                 }
             },
         );
         if !count.all_stir::<L>(column) {
-            let mut stays = self.scheme.rests(&here);
-            new.scatter(
+            let mut stays = self.scheme.is_static(&here);
+            new.store(
                 #[inline(always)]
-                |k, value| stays = stays & value.same(input[k]),
+                |k, value| stays = stays & value.equals(input[k]),
             );
-            count.stir::<L>(column, live & !stays);
+            count.stir::<L>(column, mask & !stays);
         }
         new
     }
 
     /// Take the new states of a vector into account: one vector behind, while the next one's roots and divisions are under way.
     #[inline(always)]
-    fn watch(&self, m: usize, start: usize, fresh: &Row<MOST_PARTS>, live: L::Mask, count: &mut Count) {
-        if !self.last || !L::any(live) {
+    fn diagnostics(
+        &self,
+        m: usize,
+        start: usize,
+        updated: &Row<MAX_COMPONENTS>,
+        mask: L::Mask,
+        count: &mut TileReducer,
+    ) {
+        if !self.last || !L::any(mask) {
             return;
         }
         let place = start + m;
         // SAFETY: the vector has been put; the ground is that of the same cells.
-        let cell = Cell { state: unsafe { fresh.get(m as isize) }, ground: self.ground(place) };
-        let watch = self.scheme.watch(&cell);
+        let cell = Cell { state: unsafe { updated.get(m as isize) }, ground: self.ground(place) };
+        let watch = self.scheme.diagnostics(&cell);
         // Where a part of the state is no number the rate is infinite, as it is where one is.
         let mut rate = self.scheme.rate(&cell, &self.spacing);
-        cell.state.scatter(
+        cell.state.store(
             #[inline(always)]
             |_, part| rate = part.mul_add(L::zero(), rate),
         );
-        let most = L::of(f64::INFINITY);
-        count.watch::<L>(m, live, L::select(rate.lt(most), rate, most), watch.square);
+        let most = L::splat(f64::INFINITY);
+        count.watch::<L>(m, mask, L::select(rate.lt(most), rate, most), watch.speed_squared);
         if let Some(maps) = self.maps {
-            // SAFETY: these are cells of ours.
-            unsafe { self.mark(maps, place, live, &watch) };
+            // SAFETY: these are cells of in_strip.
+            unsafe { self.mark(maps, place, mask, &watch) };
         }
     }
 
     /// Bring the maps of peaks and times up to date.
     ///
     /// # Safety
-    /// The places of `live` belong to this tile.
+    /// The places of `mask` belong to this tile.
     #[inline(always)]
-    unsafe fn mark(&self, maps: &[Sheet<f32>; 4], place: usize, live: L::Mask, watch: &Watch<L>) {
+    unsafe fn mark(
+        &self,
+        maps: &[DisjointSlice<f32>; 4],
+        place: usize,
+        mask: L::Mask,
+        watch: &Diagnostics<L>,
+    ) {
         let [thickness, speed, arrival, stop] = maps;
-        let (zero, time) = (L::zero(), L::of(self.time));
+        let (zero, time) = (L::zero(), L::splat(self.time));
         // SAFETY: as the caller promises.
         unsafe {
-            for (map, value) in [(thickness, watch.thickness), (speed, watch.square.sqrt())] {
-                let higher = live & map.get::<L>(place, live).lt(value);
+            for (map, value) in [(thickness, watch.thickness), (speed, watch.speed_squared.sqrt())] {
+                let higher = mask & map.get::<L>(place, mask).lt(value);
                 if L::any(higher) {
                     map.put(place, higher, value);
                 }
             }
-            let thick = live & zero.lt(watch.volume) & watch.film.same(zero);
+            let thick = mask & zero.lt(watch.volume) & watch.film.equals(zero);
             if L::any(thick) {
-                let seen: L = arrival.get(place, live);
-                let first = thick & !seen.same(seen);
+                let seen: L = arrival.get(place, mask);
+                let first = thick & !seen.equals(seen);
                 if L::any(first) {
                     arrival.put(place, first, time);
                 }
             }
-            let moves = live & zero.lt(watch.square);
+            let moves = mask & zero.lt(watch.speed_squared);
             if L::any(moves) {
                 stop.put(place, moves, time);
             }
@@ -481,7 +494,7 @@ impl<'a, const D: usize, const EVEN: bool, L: Wide, T: Scheme<D, L>> Strip<'a, D
     #[inline(always)]
     fn book(
         &self,
-        out: &mut [f64; EXITS.len()],
+        out: &mut [f64; OUTLETS.len()],
         tile: &Tile,
         columns: [usize; 2],
         j: isize,
@@ -489,25 +502,25 @@ impl<'a, const D: usize, const EVEN: bool, L: Wide, T: Scheme<D, L>> Strip<'a, D
         up: bool,
     ) {
         // They are sorted by rows.
-        let leaks = &self.leaks[tile.leaks.clone()];
-        let below = |up_to: isize| leaks.partition_point(|leak| (leak.cell[1] as isize) < up_to);
-        for leak in &leaks[below(j)..below(j + 1)] {
-            let (axis, side) = (leak.axis as usize, leak.side);
+        let outlets = &self.outlets[tile.outlets.clone()];
+        let below = |up_to: isize| outlets.partition_point(|outlet| (outlet.cell[1] as isize) < up_to);
+        for outlet in &outlets[below(j)..below(j + 1)] {
+            let (axis, side) = (outlet.axis as usize, outlet.side);
             if (axis == 1 && side == 1) != up {
                 continue;
             }
             let row = if axis == 0 { &scratch.across } else { &scratch.below };
             let moved = usize::from(axis == 0 && side == 1);
-            let at = leak.cell[0] as usize - columns[0] + 1 + moved;
+            let at = outlet.cell[0] as usize - columns[0] + 1 + moved;
             // SAFETY: the row has been put, and ends with room for a vector.
             let flux: T::Flux = unsafe { row.get(at as isize) };
             let leaves = if side == 0 {
-                -self.scheme.booked(&flux, Side::Right)
+                -self.scheme.outflow(&flux, Side::Right)
             } else {
-                self.scheme.booked(&flux, Side::Left)
+                self.scheme.outflow(&flux, Side::Left)
             };
-            let lambda = self.dt.first() * self.spacing.per[axis].first();
-            out[leak.exit as usize] += lambda * leaves.first();
+            let lambda = self.dt.first() * self.spacing.inv[axis].first();
+            out[outlet.exit as usize] += lambda * leaves.first();
         }
     }
 }

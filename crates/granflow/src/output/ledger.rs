@@ -1,7 +1,7 @@
 //! The ledger `mass.csv`: where the mass is at every output instant, and the sums it rests on.
 
 use super::{Error, whole_file};
-use crate::real::Sum;
+use crate::real::CompensatedSum;
 use std::fs::{self, OpenOptions};
 use std::io::Write;
 use std::path::{Path, PathBuf};
@@ -26,17 +26,17 @@ pub const COLUMNS: [&str; 15] = [
 ];
 
 /// The columns `mass_out_left`, ... among [`COLUMNS`].
-const EXITS: std::ops::Range<usize> = 5..10;
+const OUTLETS: std::ops::Range<usize> = 5..10;
 
 /// The header with these names for what lies behind the five exits.
 fn header(exits: [&str; 5]) -> String {
     let named = exits.map(|exit| format!("mass_out_{exit}"));
     let named = named.iter().map(String::as_str);
-    let columns: Vec<&str> = COLUMNS[..EXITS.start]
+    let columns: Vec<&str> = COLUMNS[..OUTLETS.start]
         .iter()
         .copied()
         .chain(named)
-        .chain(COLUMNS[EXITS.end..].iter().copied())
+        .chain(COLUMNS[OUTLETS.end..].iter().copied())
         .collect();
     columns.join(",")
 }
@@ -45,7 +45,7 @@ fn header(exits: [&str; 5]) -> String {
 fn is_header(line: &str) -> bool {
     let columns: Vec<&str> = line.split(',').collect();
     let fits = |(k, column): (usize, &&str)| {
-        if EXITS.contains(&k) { column.starts_with("mass_out_") } else { *column == COLUMNS[k] }
+        if OUTLETS.contains(&k) { column.starts_with("mass_out_") } else { *column == COLUMNS[k] }
     };
     columns.len() == COLUMNS.len() && columns.iter().enumerate().all(fits)
 }
@@ -235,7 +235,7 @@ impl Ledger {
 /// A. Neumaier, Rundungsfehleranalyse einiger Verfahren zur Summation endlicher Summen, ZAMM 54 (1974), algorithm IV.
 #[must_use]
 pub fn sum(values: impl IntoIterator<Item = f64>) -> f64 {
-    let mut sum = Sum::default();
+    let mut sum = CompensatedSum::default();
     values.into_iter().for_each(|value| sum.add(value));
     sum.value()
 }

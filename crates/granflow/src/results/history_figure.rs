@@ -61,7 +61,7 @@ pub(super) fn books<'a>(story: &'a Story<'a>) -> Option<Drawing<'a>> {
             .collect();
         let fallen: Vec<Curve> = story
             .plane
-            .exits()
+            .outlets()
             .into_iter()
             .zip(&sides)
             .zip(styles)

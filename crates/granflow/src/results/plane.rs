@@ -127,7 +127,7 @@ impl Plane {
 
     /// Where mass can leave, in the order of the books: over the four sides, and inside them.
     #[must_use]
-    pub fn exits(&self) -> [&'static str; 5] {
+    pub fn outlets(&self) -> [&'static str; 5] {
         let within = if self.as_table().is_some() { "hole" } else { "nodata" };
         ["left", "right", "bottom", "top", within]
     }

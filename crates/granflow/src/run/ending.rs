@@ -48,7 +48,7 @@ impl<const D: usize, S: Model<D>> Run<'_, '_, D, S> {
     /// What there is at the end, and the writer. What is done with is given back on the way: to end takes no more memory than
     /// to compute.
     pub(super) fn into_ending(mut self, stop_reason: StopReason) -> (Ending, Writer) {
-        self.simulation.close();
+        self.simulation.release_buffers();
         let end = S::maps(&mut self.simulation, self.sand);
         let summary = self.summary(stop_reason);
         let Run { work, simulation, plane, writer, .. } = self;
@@ -96,7 +96,7 @@ impl<const D: usize, S: Model<D>> Run<'_, '_, D, S> {
             version: env!("CARGO_PKG_VERSION").to_owned(),
             extra: serde_json::Map::new(),
         };
-        for (name, value) in self.plane.exits().iter().zip(out) {
+        for (name, value) in self.plane.outlets().iter().zip(out) {
             summary.add(&format!("mass_out_{name}"), value);
         }
         S::sum_up(simulation, self.sand, &mut summary);

@@ -60,7 +60,7 @@ impl<const D: usize> Model<D> for $scheme {
     }
     fn maps(simulation: &mut Simulation<D, Self>, _sand: Option<&Sand<D>>) -> Maps {
         let deposit = simulation.map(thickness);
-        vec![("deposit", deposit), ("yield_margin", simulation.margins())]
+        vec![("deposit", deposit), ("yield_margin", simulation.yield_ratios())]
     }
     fn sum_up(simulation: &Simulation<D, Self>, _sand: Option<&Sand<D>>, summary: &mut Summary) {
         let totals = simulation.totals();

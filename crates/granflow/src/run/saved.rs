@@ -36,7 +36,7 @@ impl<'s, const D: usize, S: Model<D>> Run<'_, 's, D, S> {
             // An older one would belong to other frames.
             output::remove_if_there(&checkpoint_in(directory))?;
             let frames = Frames::create(&frame_file, work.case.precision(), plane.series())?;
-            let ledger = Ledger::create(&ledger_file, plane.exits())?;
+            let ledger = Ledger::create(&ledger_file, plane.outlets())?;
             let mut run = Run::new(work, simulation, plane, sand, frames, ledger)?;
             run.initial = initial;
             run.peak_speed = run.simulation.speed();
@@ -50,7 +50,7 @@ impl<'s, const D: usize, S: Model<D>> Run<'_, 's, D, S> {
         if !saved.exists() {
             return Err(refused(format!("there is no checkpoint {}", saved.display())));
         }
-        simulation.close();
+        simulation.release_buffers();
         let mut checkpoint = Checkpoint::read(&saved, &case_hash(&work.case.text()))?;
         let (mut frames, _torn) = Frames::open(&frame_file)?;
         let mut ledger = Ledger::open(&ledger_file)?;

@@ -52,7 +52,7 @@ impl Mountain {
             cells: [bed.columns, bed.rows],
             origin: [bed.west, bed.south],
             size: [bed.cell; 2],
-            boundary: [[Boundary::Nothing; 2]; 2],
+            boundary: [[Boundary::Absorbing; 2]; 2],
         };
         let thickness = release.map(|cell, volume| volume * terrain.fit(bed.place(cell)).cosine());
         // The grounds hold the elevation from here on.

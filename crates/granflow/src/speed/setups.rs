@@ -189,7 +189,7 @@ fn as_published(published: Kinetic, extent: Extent) -> Begun<2, Kinetic> {
 }
 
 pub(super) fn on_terrain(second: bool, extent: Extent) -> Begun<2, Balanced<Law, ground::Terrain<2, f64>>> {
-    let sheet = grid::<2>(extent.cells, Boundary::Nothing);
+    let sheet = grid::<2>(extent.cells, Boundary::Absorbing);
     let height = |number: usize| {
         let [x, y] = sheet.centre(sheet.index(number));
         0.3 * x + 0.02 * (9.0 * x).sin() * (7.0 * y).cos()
@@ -231,6 +231,6 @@ fn on_table(scheme: HadelerKuttler, extent: Extent) -> Begun<2, HadelerKuttler> 
         let rolls = index.iter().all(|k| *k < last) && extent.is_wet(index);
         Pile { u: 0.5 * from_edge as f64 / extent.cells as f64, v: 0.1 * one(rolls) }
     };
-    let sheet = grid::<2>(extent.cells, Boundary::Nothing);
+    let sheet = grid::<2>(extent.cells, Boundary::Absorbing);
     Begun::new(Simulation::new(scheme, sheet, scheme.stages(), COURANT, ground, start), extent.all())
 }

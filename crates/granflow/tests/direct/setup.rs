@@ -76,7 +76,7 @@ impl<const D: usize> Setup<D> {
                 cells: self.table.nodes(),
                 origin: [0.0; D],
                 size: self.size,
-                boundary: [[Boundary::Nothing; 2]; D],
+                boundary: [[Boundary::Absorbing; 2]; D],
             },
             EULER,
             step,

@@ -14,7 +14,7 @@ use crate::failure::Failure;
 
 /// Nine tenths of the step that eqs. 26, 27 allow.
 fn step(scheme: HadelerKuttler) -> StepSize {
-    StepSize::Courant(0.9 * Scheme::<2, f64>::most_courant(&scheme))
+    StepSize::Courant(0.9 * Scheme::<2, f64>::max_courant(&scheme))
 }
 
 /// Cells along a side in the table of errors; the paper's has a fourth, 160.

@@ -5,7 +5,7 @@ use std::path::Path;
 use std::time::Duration;
 
 const LENGTHS: [usize; 3] = [2 * NUMBERS + 700, 3, AT_ONCE + 1];
-const EXITS: [&str; 5] = ["left", "right", "bottom", "top", "nodata"];
+const OUTLETS: [&str; 5] = ["left", "right", "bottom", "top", "nodata"];
 
 fn store(folder: &Path, precision: Precision) -> Frames {
     let field = |(k, length): (usize, usize)| Field { name: format!("field_{k}"), length };
@@ -14,7 +14,7 @@ fn store(folder: &Path, precision: Precision) -> Frames {
 }
 
 fn writer(folder: &Path, frames: Frames) -> Writer {
-    let ledger = Ledger::create(&folder.join("mass.csv"), EXITS).unwrap();
+    let ledger = Ledger::create(&folder.join("mass.csv"), OUTLETS).unwrap();
     Writer::start(frames, ledger, folder.join("state.bin"), "test".to_owned()).unwrap()
 }
 
@@ -46,7 +46,7 @@ fn the_files_are_those_that_would_be_written_at_once() {
         let state: Vec<f64> = (0..NUMBERS + 9).map(|k| (k as f64).sqrt()).collect();
         let mut writer = writer(beside.path(), store(beside.path(), precision));
         let mut frames = store(at_once.path(), precision);
-        let mut ledger = Ledger::create(&at_once.path().join("mass.csv"), EXITS).unwrap();
+        let mut ledger = Ledger::create(&at_once.path().join("mass.csv"), OUTLETS).unwrap();
         for step in 0..4 {
             let time = step as f64;
             order(&mut writer, time).unwrap();
