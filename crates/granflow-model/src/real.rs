@@ -2,6 +2,11 @@
 //!
 //! Decisions on cell values are [`Real::select`], never `if`: a lane cannot branch.
 
+#[cfg(any(test, not(feature = "std")))]
+mod logarithm;
+#[cfg(any(test, not(feature = "std")))]
+mod rounded;
+
 use core::fmt::Debug;
 use core::ops::{Add, BitAnd, BitOr, Div, Mul, Neg, Not, Sub};
 
@@ -177,7 +182,10 @@ impl Real for f64 {
     }
     #[inline(always)]
     fn sqrt(self) -> f64 {
-        f64::sqrt(self)
+        cfg_select! {
+            feature = "std" => { f64::sqrt(self) }
+            _ => { rounded::sqrt(self) }
+        }
     }
     #[inline(always)]
     fn abs(self) -> f64 {
@@ -185,11 +193,26 @@ impl Real for f64 {
     }
     #[inline(always)]
     fn ln(self) -> f64 {
-        f64::ln(self)
+        cfg_select! {
+            feature = "std" => { f64::ln(self) }
+            _ => { logarithm::ln(self) }
+        }
     }
     #[inline(always)]
     fn mul_add(self, factor: f64, term: f64) -> f64 {
-        f64::mul_add(self, factor, term)
+        cfg_select! {
+            feature = "std" => { f64::mul_add(self, factor, term) }
+            _ => { rounded::mul_add(self, factor, term) }
+        }
+    }
+}
+
+/// base^exponent, for base >= 0. With the feature `std` it is the standard library's.
+#[inline]
+pub(crate) fn power(base: f64, exponent: f64) -> f64 {
+    cfg_select! {
+        feature = "std" => { base.powf(exponent) }
+        _ => { logarithm::power(base, exponent) }
     }
 }
 

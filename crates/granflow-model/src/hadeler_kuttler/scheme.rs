@@ -7,7 +7,7 @@
 
 use super::{Ground, Pile};
 use crate::limiter::{Limited, minmod};
-use crate::real::{Real, for_axis, per_axis};
+use crate::real::{Real, for_axis, per_axis, power};
 use crate::scheme::{
     Cell, Components, Diagnostics, Faces, Scheme, SchemeVisitor, Side, Spacing, Stencil, components,
 };
@@ -358,7 +358,7 @@ impl<const LIMITED: bool> HadelerKuttler<LIMITED> {
         let smallest = stencil.spacing().smallest;
         let residual = self.residual(stencil, R::splat(smallest));
         let square = residual * residual;
-        square / (square + R::splat(smallest.powf(exponent)))
+        square / (square + R::splat(power(smallest, exponent)))
     }
 }
 
