@@ -1,7 +1,9 @@
 //! A run in memory: fields, clock, tiles and ledger.
 
+mod error;
 mod traffic;
 
+pub use error::{BuildError, Failure};
 pub use traffic::Traffic;
 
 use crate::backend::{
@@ -23,64 +25,9 @@ use rayon::prelude::*;
 pub enum StepSize {
     /// The same dt every step.
     Fixed(f64),
-    /// dt = courant / max over cells of sum over axes of (|u| + sqrt(2 beta h))/dx.
+    /// dt = courant / max over cells of [`Scheme::rate`].
     Courant(f64),
 }
-
-/// Why a step could not be taken.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Failure {
-    /// A state became infinite or not a number.
-    NotFinite {
-        /// Steps done.
-        step: u64,
-        /// Time reached.
-        time: f64,
-    },
-    /// A fixed step is too long for the state as it has become.
-    TooLong {
-        /// Steps done.
-        step: u64,
-        /// Time reached.
-        time: f64,
-        /// The step.
-        dt: f64,
-        /// Its Courant number.
-        courant: f64,
-        /// The largest allowed.
-        most: f64,
-    },
-    /// The step became too small to advance the clock.
-    Collapsed {
-        /// Steps done.
-        step: u64,
-        /// Time reached.
-        time: f64,
-        /// The step asked for.
-        dt: f64,
-    },
-}
-
-impl core::fmt::Display for Failure {
-    fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
-        match self {
-            Self::NotFinite { step, time } => write!(
-                f,
-                "the state is not finite after step {step}, time {time}: take a smaller step, or a positive scheme (verfahren_1, balanced); on a table, rates that are finite"
-            ),
-            Self::TooLong { step, time, dt, courant, most } => write!(
-                f,
-                "the fixed step {dt:e} is too long at step {step}, time {time}: its Courant number is {courant:.3}, the scheme takes up to {most}; set a smaller scheme.step, or scheme.courant for an adaptive one"
-            ),
-            Self::Collapsed { step, time, dt } => write!(
-                f,
-                "the step collapsed to {dt:e} at step {step}, time {time}: some speed has grown without bound"
-            ),
-        }
-    }
-}
-
-impl core::error::Error for Failure {}
 
 /// Sums over the whole grid.
 #[derive(Clone, Copy, Debug, Default)]
@@ -174,14 +121,18 @@ impl<const D: usize, S: Scheme<D, f64>> Stencil<D, f64, S::State, S::Ground> for
 
 impl<const D: usize, S: Scheme<D, f64>> Simulation<D, S> {
     /// A run from the ground and the initial state of every cell, given by index per axis.
+    ///
+    /// # Errors
+    /// [`BuildError`] for a grid without cells or whose cells have no size, and for a step that the scheme does not take.
     pub fn new(
         scheme: S,
         grid: Grid<D>,
-        stages: Stages,
         step_size: StepSize,
         ground: impl Fn([usize; D]) -> S::Ground + Sync,
         initial: impl Fn([usize; D]) -> S::State + Sync,
-    ) -> Self {
+    ) -> Result<Self, BuildError> {
+        const { assert!(D == 1 || D == 2, "a grid has one dimension or two") };
+        error::check(&grid, step_size, scheme.max_courant())?;
         let layout = Layout::of(&grid);
         let mut bed = Field::zeros::<S::Ground>(&layout);
         let mut now = Field::zeros::<S::State>(&layout);
@@ -214,10 +165,10 @@ impl<const D: usize, S: Scheme<D, f64>> Simulation<D, S> {
             supply: 0.0,
             poured: CompensatedSum::default(),
             last_dt: 0.0,
+            stages: scheme.stages(),
             scheme,
             grid,
             layout,
-            stages,
             step_size,
             now,
             tiles,
@@ -228,7 +179,7 @@ impl<const D: usize, S: Scheme<D, f64>> Simulation<D, S> {
         simulation.wake_all();
         simulation.rebuild_ground_cache();
         simulation.rescan();
-        simulation
+        Ok(simulation)
     }
 
     /// Volume per time that the grounds pour in.
@@ -716,10 +667,10 @@ impl<const D: usize, S: Kernel<D>> Simulation<D, S> {
         if !advances {
             return Err(Failure::Collapsed { step: self.step, time: self.time, dt });
         }
-        let (courant, most) = (dt * self.rate(), self.scheme.max_courant());
-        if courant > most * (1.0 + 1e-9) {
+        let max = self.scheme.max_courant();
+        if S::REFUSES_LONG_STEPS && dt * self.rate() > max * (1.0 + 1e-9) {
             let courant = wanted * self.rate();
-            return Err(Failure::TooLong { step: self.step, time: self.time, dt: wanted, courant, most });
+            return Err(Failure::TooLong { step: self.step, time: self.time, dt: wanted, courant, max });
         }
         self.wake();
         let mut out = [0.0; 5];

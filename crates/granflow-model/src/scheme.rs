@@ -1,6 +1,7 @@
 //! A scheme is a few pointwise functions; arrays, axes, threads and files live elsewhere.
 
 use crate::real::{Real, for_axis, per_axis};
+use crate::time::Stages;
 
 /// A value of a cell that is stored as a few numbers, one array each (struct of arrays).
 ///
@@ -221,6 +222,18 @@ pub trait Scheme<const D: usize, R: Real>: Copy + Send + Sync {
 
     /// Runs end when the state changes slowly enough: the largest change of a step is kept.
     const TRACKS_CHANGE: bool = false;
+    /// A fixed step whose Courant number exceeds [`Scheme::max_courant`] is refused. The published schemes of Savage and Hutter's
+    /// model take it, as their papers do.
+    const REFUSES_LONG_STEPS: bool = false;
+
+    /// The Runge-Kutta method that the scheme is stepped by.
+    fn stages(&self) -> Stages;
+    /// The largest Courant number dt * [`Scheme::rate`] at which the scheme is known to be stable.
+    fn max_courant(&self) -> f64;
+    /// The Courant number to take where nobody asks for another one.
+    fn suggested_courant(&self) -> f64 {
+        0.9 * self.max_courant()
+    }
 
     /// Let `work` have the same scheme on another scalar: states and grounds of the same parts in the same order.
     fn with_scalar<L: Real, V: SchemeVisitor<D, L>>(&self, visitor: V) -> V::Output;
@@ -256,10 +269,6 @@ pub trait Scheme<const D: usize, R: Real>: Copy + Send + Sync {
     /// sum over axes of (fastest signal)/dx: the Courant condition is dt times this <= courant; finite in every finite state, for
     /// a run ends where it is not. \[1/time\]
     fn rate(&self, here: &Cell<Self::State, Self::Ground>, spacing: &Spacing<D, R>) -> R;
-    /// The largest Courant number with which a fixed step is taken.
-    fn max_courant(&self) -> f64 {
-        f64::INFINITY
-    }
     /// keep * old + (1 - keep) * new, without undoing an exact stop of `new`.
     fn rk_combine(&self, keep: R, old: &Self::State, new: &Self::State) -> Self::State;
     /// The cell rests by a proof of the scheme (or is dry): with neighbours at rest nothing will change here.

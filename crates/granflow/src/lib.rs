@@ -18,20 +18,20 @@
 //!
 //! ```
 //! use granflow::savage_hutter::{Flow, balanced::Balanced, friction::Coulomb, friction::Law, ground::Chute};
-//! use granflow::{grid::Grid, scheme::Boundary, simulation::{Simulation, StepSize}, time::SSP_RK2};
+//! use granflow::{grid::Grid, scheme::Boundary, simulation::{Simulation, StepSize}};
 //!
 //! let grid = Grid { cells: [240], origin: [-6.0], size: [0.05], boundary: [[Boundary::Open; 2]] };
 //! let flat = Chute { tilt: [0.0], beta: 0.4, cos: 1.0, curvature: 0.0 };
 //! let column = |i| Flow::still(if grid.centre(i)[0].abs() < 1.0 { 1.0 } else { 0.0 });
 //! let (scheme, step) = (Balanced::second(Law::Coulomb(Coulomb { mu: 0.32 }), 1e-6), StepSize::Courant(0.45));
-//! let mut run = Simulation::new(scheme, grid, SSP_RK2, step, |_| flat, column);
+//! let mut run = Simulation::new(scheme, grid, step, |_| flat, column)?;
 //! let before = run.totals().volume;
 //! while !run.at_rest() {
 //!     run.advance(f64::INFINITY)?;
 //! }
 //! assert_eq!(run.speed(), 0.0); // not small: zero
 //! assert!((run.totals().volume / before - 1.0).abs() < 1e-13);
-//! # Ok::<(), granflow::simulation::Failure>(())
+//! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //!
 //! # Map of the modules

@@ -20,7 +20,7 @@ fn run(scheme: HadelerKuttler, (u, v): (&[f64], &[f64])) -> Simulation<1, Hadele
     let n = v.len();
     let h = 1.0 / n as f64;
     let site = Site::level(Table::rectangle([n], [[true; 2]]), [h]);
-    site.simulation(scheme, StepSize::Fixed(LAMBDA * h), &vec![F; n], (u, v))
+    site.simulation(scheme, StepSize::Fixed(LAMBDA * h), &vec![F; n], (u, v)).unwrap()
 }
 
 /// sup |u - ū| and the L1 norm of v - v̄.

@@ -35,20 +35,12 @@ pub struct HadelerKuttler<const LIMITED: bool = true> {
     pub slopes: Slopes,
 }
 
-/// First order (eqs. 8-10), to be stepped by [`crate::time::EULER`].
+/// First order (eqs. 8-10).
 pub const FIRST_ORDER: HadelerKuttler = HadelerKuttler { slopes: Slopes::None };
-/// Second order (eqs. 16-23), to be stepped by [`crate::time::SSP_RK2`]; not well-balanced in v.
+/// Second order (eqs. 16-23); not well-balanced in v.
 pub const SECOND_ORDER: HadelerKuttler = HadelerKuttler { slopes: Slopes::Minmod };
-/// Second order away from steady states, first order and well-balanced at them (eqs. 36-40), with exponent 2; to be
-/// stepped by [`crate::time::SSP_RK2`].
+/// Second order away from steady states, first order and well-balanced at them (eqs. 36-40), with exponent 2.
 pub const ADAPTIVE: HadelerKuttler = HadelerKuttler { slopes: Slopes::Adaptive { exponent: 2.0 } };
-
-impl HadelerKuttler {
-    /// The time stepping that belongs to the scheme: Euler's without slopes, else [`SSP_RK2`] (eqs. 8, 21-23).
-    pub fn stages(&self) -> Stages {
-        if self.slopes == Slopes::None { EULER } else { SSP_RK2 }
-    }
-}
 
 /// Cells along each axis at a corner.
 const TWO: usize = 2;
@@ -479,6 +471,20 @@ where
     type Flux = R;
     type Corner = R;
     const TRACKS_CHANGE: bool = true;
+    const REFUSES_LONG_STEPS: bool = true;
+
+    /// Euler's method without slopes, else [`SSP_RK2`] (eqs. 8, 21-23).
+    fn stages(&self) -> Stages {
+        if self.slopes == Slopes::None { EULER } else { SSP_RK2 }
+    }
+    /// 1 without slopes, else 1/2 (eqs. 26, 27).
+    fn max_courant(&self) -> f64 {
+        if self.slopes == Slopes::None { 1.0 } else { 0.5 }
+    }
+    /// Half of what is usual elsewhere, as in the paper.
+    fn suggested_courant(&self) -> f64 {
+        0.45 * Scheme::<D, R>::max_courant(self)
+    }
 
     fn with_scalar<L: Real, V: SchemeVisitor<D, L>>(&self, visitor: V) -> V::Output {
         match self.slopes {
@@ -539,9 +545,6 @@ where
             sum = sum + fastest * spacing.inv[axis];
         });
         sum
-    }
-    fn max_courant(&self) -> f64 {
-        if self.slopes == Slopes::None { 1.0 } else { 0.5 }
     }
     #[inline(always)]
     fn rk_combine(&self, keep: R, old: &Pile<R>, new: &Pile<R>) -> Pile<R> {

@@ -14,6 +14,7 @@ use crate::scheme::{
     Cell, Components, Diagnostics, Faces, Neighbours, Scheme, SchemeVisitor, Side, Spacing, Stencil,
     components,
 };
+use crate::time::{EULER, SSP_RK2, Stages};
 use core::marker::PhantomData;
 
 /// The default scheme: friction law, thinnest moving depth, order of accuracy. Where it is known that there are no slopes,
@@ -26,17 +27,17 @@ pub struct Balanced<F, B, const LIMITED: bool = true> {
     film: f64,
     /// The friction law.
     pub friction: F,
-    /// Limited slopes of h and u (second order, with [`crate::time::SSP_RK2`]).
+    /// Limited slopes of h and u (second order).
     pub slopes: bool,
     bed: PhantomData<fn() -> B>,
 }
 
 impl<F, B> Balanced<F, B> {
-    /// First order, to be stepped by [`crate::time::EULER`].
+    /// First order.
     pub fn first(friction: F, film: f64) -> Self {
         Balanced { friction, film: film.max(f64::MIN_POSITIVE), slopes: false, bed: PhantomData }
     }
-    /// Second order, to be stepped by [`crate::time::SSP_RK2`].
+    /// Second order.
     pub fn second(friction: F, film: f64) -> Self {
         Balanced { slopes: true, ..Self::first(friction, film) }
     }
@@ -465,6 +466,15 @@ where
     type FaceStates = EdgesOf<D, R, B, LIMITED>;
     type Flux = Flux<D, R>;
     type Corner = ();
+
+    /// Euler's method at first order, else [`SSP_RK2`].
+    fn stages(&self) -> Stages {
+        if self.slopes { SSP_RK2 } else { EULER }
+    }
+    /// 1 at first order, else 1/2: the depth stays positive.
+    fn max_courant(&self) -> f64 {
+        if self.slopes { 0.5 } else { 1.0 }
+    }
 
     fn with_scalar<L: Real, V: SchemeVisitor<D, L>>(&self, visitor: V) -> V::Output {
         let Balanced { friction, film, slopes, .. } = *self;

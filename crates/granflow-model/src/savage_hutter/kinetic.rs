@@ -1,4 +1,4 @@
-//! The five published kinetic schemes as five constants of one [`Kinetic`].
+//! The five published kinetic schemes as five constants, the [`Variant`]s of one [`Kinetic`].
 //!
 //! Kaland & Struckmeier 2007 (report, Schemes 1-3) and Kaland 2007 (thesis, Verfahren 1-5), errata corrected; in
 //! two dimensions on a plane by applying the fluxes along each axis, the (1, 2, 1)/4 depth per axis and static
@@ -12,6 +12,7 @@ use crate::real::{Real, dot, for_axis, per_axis};
 use crate::scheme::{
     Cell, Diagnostics, Faces, Neighbours, Scheme, SchemeVisitor, Side, Spacing, Stencil, components,
 };
+use crate::time::{EULER, Stages};
 
 /// The depth that enters the half moments at a face.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -40,9 +41,9 @@ pub enum StaticDepth {
     Smoothed,
 }
 
-/// A published scheme as five choices, on a plane chute with Coulomb friction.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Kinetic {
+/// The five choices that tell the published schemes apart.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Variant {
     /// Face depth of a moving cell.
     pub moving: FaceDepth,
     /// Face depth of a resting cell.
@@ -53,32 +54,45 @@ pub struct Kinetic {
     pub static_depth: StaticDepth,
     /// Blend by mu = -q/(dt g(q) h^{n+1}).
     pub blend: bool,
-    /// mu = tan(delta).
-    pub friction: Coulomb,
 }
 
-/// Verfahren 1 = Scheme 1. The friction of the constants is a placeholder for the case's.
-pub const VERFAHREN_1: Kinetic = Kinetic {
+impl Variant {
+    /// The scheme with this friction.
+    pub const fn with(self, friction: Coulomb) -> Kinetic {
+        Kinetic { variant: self, friction }
+    }
+}
+
+/// Verfahren 1 = Scheme 1.
+pub const VERFAHREN_1: Variant = Variant {
     moving: FaceDepth::Own,
     resting: FaceDepth::Own,
     rest: RestTest::Still,
     static_depth: StaticDepth::New,
     blend: false,
-    friction: Coulomb { mu: 0.0 },
 };
 /// Verfahren 2.
-pub const VERFAHREN_2: Kinetic = Kinetic {
+pub const VERFAHREN_2: Variant = Variant {
     moving: FaceDepth::Mean,
     resting: FaceDepth::Mean,
     static_depth: StaticDepth::Smoothed,
     ..VERFAHREN_1
 };
 /// Verfahren 3.
-pub const VERFAHREN_3: Kinetic = Kinetic { rest: RestTest::Slow, ..VERFAHREN_2 };
+pub const VERFAHREN_3: Variant = Variant { rest: RestTest::Slow, ..VERFAHREN_2 };
 /// Verfahren 4 = Scheme 2.
-pub const VERFAHREN_4: Kinetic = Kinetic { blend: true, ..VERFAHREN_3 };
+pub const VERFAHREN_4: Variant = Variant { blend: true, ..VERFAHREN_3 };
 /// Verfahren 5 = Scheme 3.
-pub const VERFAHREN_5: Kinetic = Kinetic { moving: FaceDepth::Own, ..VERFAHREN_4 };
+pub const VERFAHREN_5: Variant = Variant { moving: FaceDepth::Own, ..VERFAHREN_4 };
+
+/// A published scheme on a plane chute with Coulomb friction.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Kinetic {
+    /// Which one.
+    pub variant: Variant,
+    /// mu = tan(delta).
+    pub friction: Coulomb,
+}
 
 /// What a cell offers to its faces.
 #[derive(Clone, Copy, Debug)]
@@ -137,14 +151,14 @@ impl Kinetic {
         &self,
         near: &Neighbours<D, R, Flow<D, R>, Chute<D, R>>,
     ) -> [Faces<Flow<D, R>>; D] {
-        let here = Self::edges(self.resting, &near.here, &self.primitives(&near.here));
+        let here = Self::edges(self.variant.resting, &near.here, &self.primitives(&near.here));
         per_axis!(axis => {
             let (lo, hi) = (&near.lo[axis], &near.hi[axis]);
-            let lo = Self::edges(self.resting, lo, &self.primitives(lo));
-            let hi = Self::edges(self.resting, hi, &self.primitives(hi));
+            let lo = Self::edges(self.variant.resting, lo, &self.primitives(lo));
+            let hi = Self::edges(self.variant.resting, hi, &self.primitives(hi));
             Faces {
-                lo: Self::through(self.resting, axis, &lo, &here),
-                hi: Self::through(self.resting, axis, &here, &hi),
+                lo: Self::through(self.variant.resting, axis, &lo, &here),
+                hi: Self::through(self.variant.resting, axis, &here, &hi),
             }
         })
     }
@@ -184,6 +198,14 @@ impl<const D: usize, R: Real> Scheme<D, R> for Kinetic {
     type Flux = Flow<D, R>;
     type Corner = ();
 
+    fn stages(&self) -> Stages {
+        EULER
+    }
+    /// The bound of Verfahren 1 (report eq. 28), under which its depth stays positive; none is proven for the others.
+    fn max_courant(&self) -> f64 {
+        1.0
+    }
+
     #[inline(always)]
     fn with_scalar<L: Real, V: SchemeVisitor<D, L>>(&self, visitor: V) -> V::Output {
         visitor.visit(self)
@@ -200,12 +222,12 @@ impl<const D: usize, R: Real> Scheme<D, R> for Kinetic {
         stencil: &impl Stencil<D, R, Flow<D, R>, Chute<D, R>>,
         prime: &[Density<R>; D],
     ) -> FaceStates<D, R> {
-        Self::edges(self.moving, &stencil.at([0; D]), prime)
+        Self::edges(self.variant.moving, &stencil.at([0; D]), prime)
     }
 
     #[inline(always)]
     fn flux(&self, axis: usize, left: &FaceStates<D, R>, right: &FaceStates<D, R>) -> Flow<D, R> {
-        Self::through(self.moving, axis, left, right)
+        Self::through(self.variant.moving, axis, left, right)
     }
 
     #[inline(always)]
@@ -234,7 +256,7 @@ impl<const D: usize, R: Real> Scheme<D, R> for Kinetic {
         let per = one / R::select(still, one, size);
         let g: [R; D] = per_axis!(k => ground.tilt[k] - bound * (q[k] * per));
         let square = dot(g, g);
-        let rests = match self.rest {
+        let rests = match self.variant.rest {
             RestTest::Still => still,
             // |q| < dt |g| h
             RestTest::Slow => {
@@ -247,8 +269,11 @@ impl<const D: usize, R: Real> Scheme<D, R> for Kinetic {
             return moved;
         }
 
-        let resting =
-            if self.resting == self.moving { moving } else { divergence(&self.resting_faces(&near), lambda) };
+        let resting = if self.variant.resting == self.variant.moving {
+            moving
+        } else {
+            divergence(&self.resting_faces(&near), lambda)
+        };
         let resting_h = normal(h - resting.h);
         // g~: the static force per mass, tilt plus the excess cut to the disc of radius R
         let by_neighbours = Self::excess(&near);
@@ -260,7 +285,7 @@ impl<const D: usize, R: Real> Scheme<D, R> for Kinetic {
         let weight = dt * square * moving_h;
         let no_weight = weight.equals(zero) | still;
         let blend = one + R::select(no_weight, zero, dot(q, g) / R::select(no_weight, one, weight));
-        let static_depth = match self.static_depth {
+        let static_depth = match self.variant.static_depth {
             StaticDepth::New => [resting_h; D],
             StaticDepth::Smoothed => per_axis!(k => {
                 ((near.lo[k].state.h + near.hi[k].state.h) + (h + h)) * R::splat(0.25)
@@ -270,7 +295,7 @@ impl<const D: usize, R: Real> Scheme<D, R> for Kinetic {
             h: R::select(rests, resting_h, moving_h),
             q: per_axis!(k => {
                 let source = dt * held[k] * static_depth[k];
-                let rest = if self.blend { blend * source } else { q[k] + source };
+                let rest = if self.variant.blend { blend * source } else { q[k] + source };
                 R::select(rests, rest - resting.q[k], moved.q[k])
             }),
         }

@@ -9,11 +9,10 @@ use crate::savage_hutter::Flow;
 use crate::savage_hutter::balanced::Balanced;
 use crate::savage_hutter::friction::{Coulomb, Law};
 use crate::savage_hutter::ground::{self, Chute};
-use crate::savage_hutter::kinetic::{FaceDepth, Kinetic, VERFAHREN_1, VERFAHREN_5};
+use crate::savage_hutter::kinetic::{FaceDepth, Kinetic, VERFAHREN_1, VERFAHREN_5, Variant};
 use crate::scheme::Boundary;
 use crate::simulation::{Simulation, StepSize};
 use crate::terrain::{Curvature, Terrain};
-use crate::time::{EULER, SSP_RK2, Stages};
 
 /// A run to measure a scheme by.
 pub struct Setup {
@@ -162,11 +161,8 @@ fn cap<const D: usize>(sheet: &Grid<D>, extent: Extent, index: [usize; D]) -> Fl
     Flow { h, q: u.map(|u| h * u) }
 }
 
-fn balanced<B>(second: bool) -> (Balanced<Law, B>, Stages) {
-    match second {
-        false => (Balanced::first(LAW, FILM), EULER),
-        true => (Balanced::second(LAW, FILM), SSP_RK2),
-    }
+fn balanced<B>(second: bool) -> Balanced<Law, B> {
+    if second { Balanced::second(LAW, FILM) } else { Balanced::first(LAW, FILM) }
 }
 
 pub(super) fn on_plane<const D: usize>(
@@ -174,18 +170,24 @@ pub(super) fn on_plane<const D: usize>(
     extent: Extent,
 ) -> Begun<D, Balanced<Law, Chute<D, f64>>> {
     let sheet = grid::<D>(extent.cells, Boundary::Open);
-    let (scheme, stages) = balanced(second);
+    let scheme = balanced(second);
     let start = |index| cap(&sheet, extent, index);
-    Begun::new(Simulation::new(scheme, sheet, stages, COURANT, |_| plane(), start), extent.all())
+    Begun::new(
+        Simulation::new(scheme, sheet, COURANT, |_| plane(), start).expect("a step that the scheme takes"),
+        extent.all(),
+    )
 }
 
-fn as_published(published: Kinetic, extent: Extent) -> Begun<2, Kinetic> {
+fn as_published(published: Variant, extent: Extent) -> Begun<2, Kinetic> {
     let sheet = grid::<2>(extent.cells, Boundary::Open);
-    let scheme = Kinetic { friction: FRICTION, ..published };
+    let scheme = published.with(FRICTION);
     // Beside dry ground a mean depth takes from a cell what it does not hold: there the layer goes on, at rest.
-    let beside = if scheme.resting == FaceDepth::Mean { LAYER } else { 0.0 };
+    let beside = if published.resting == FaceDepth::Mean { LAYER } else { 0.0 };
     let start = |index| if extent.is_wet(index) { cap(&sheet, extent, index) } else { Flow::still(beside) };
-    Begun::new(Simulation::new(scheme, sheet, EULER, COURANT, |_| plane(), start), extent.all())
+    Begun::new(
+        Simulation::new(scheme, sheet, COURANT, |_| plane(), start).expect("a step that the scheme takes"),
+        extent.all(),
+    )
 }
 
 pub(super) fn on_terrain(second: bool, extent: Extent) -> Begun<2, Balanced<Law, ground::Terrain<2, f64>>> {
@@ -205,10 +207,13 @@ pub(super) fn on_terrain(second: bool, extent: Extent) -> Begun<2, Balanced<Law,
         crs: None,
     };
     let terrain = Terrain::new(bed, Curvature::Length(3.0 * sheet.size[0]));
-    let (scheme, stages) = balanced(second);
+    let scheme = balanced(second);
     let ground = move |cell| crate::setup::ground_at(&terrain, 1.0, cell);
     let start = |index| cap(&sheet, extent, index);
-    Begun::new(Simulation::new(scheme, sheet, stages, COURANT, ground, start), extent.all())
+    Begun::new(
+        Simulation::new(scheme, sheet, COURANT, ground, start).expect("a step that the scheme takes"),
+        extent.all(),
+    )
 }
 
 /// A table half as high as it will be, with sand poured and rolling on it; the last column and row are nodes only.
@@ -232,5 +237,8 @@ fn on_table(scheme: HadelerKuttler, extent: Extent) -> Begun<2, HadelerKuttler> 
         Pile { u: 0.5 * from_edge as f64 / extent.cells as f64, v: 0.1 * one(rolls) }
     };
     let sheet = grid::<2>(extent.cells, Boundary::Absorbing);
-    Begun::new(Simulation::new(scheme, sheet, scheme.stages(), COURANT, ground, start), extent.all())
+    Begun::new(
+        Simulation::new(scheme, sheet, COURANT, ground, start).expect("a step that the scheme takes"),
+        extent.all(),
+    )
 }

@@ -7,7 +7,6 @@ use granflow::hadeler_kuttler::scheme::{FIRST_ORDER, HadelerKuttler};
 use granflow::hadeler_kuttler::table::{Edge, Table};
 use granflow::scheme::{Boundary, Side};
 use granflow::simulation::{Simulation, StepSize};
-use granflow::time::EULER;
 
 pub const F: f64 = 0.5;
 pub const ALL: [[bool; 2]; 2] = [[true; 2]; 2];
@@ -78,11 +77,11 @@ impl<const D: usize> Setup<D> {
                 size: self.size,
                 boundary: [[Boundary::Absorbing; 2]; D],
             },
-            EULER,
             step,
             ground,
             pile,
         )
+        .unwrap()
     }
     /// Largest change of u and of v in one step.
     pub fn one_step(&self) -> [f64; 2] {

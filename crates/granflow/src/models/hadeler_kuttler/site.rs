@@ -6,7 +6,7 @@ use crate::hadeler_kuttler::scheme::HadelerKuttler;
 use crate::hadeler_kuttler::table::Table;
 use crate::hadeler_kuttler::{Ground, Pile};
 use crate::scheme::Boundary;
-use crate::simulation::{Simulation, StepSize};
+use crate::simulation::{BuildError, Simulation, StepSize};
 
 /// Where sand is poured: what the simulation of a table needs beside source and state.
 ///
@@ -69,19 +69,22 @@ impl<const D: usize> Site<D> {
     }
 
     /// A run under a source f (in the cells), from a standing layer (at the nodes) and a rolling layer (in the cells).
+    ///
+    /// # Errors
+    /// [`BuildError`] where the scheme does not take the step, or the cells have no size.
     pub fn simulation(
         &self,
         scheme: HadelerKuttler,
         step: StepSize,
         source: &[f64],
         (standing, rolling): (&[f64], &[f64]),
-    ) -> Simulation<D, HadelerKuttler> {
+    ) -> Result<Simulation<D, HadelerKuttler>, BuildError> {
         let initial = |index| {
             let cell = self.cell(index).filter(|_| self.table.inside(index));
             Pile { u: standing[self.node(index)], v: cell.map_or(0.0, |cell| rolling[cell]) }
         };
         let ground = |index| self.ground(index, source);
-        Simulation::new(scheme, self.grid(), scheme.stages(), step, ground, initial)
+        Simulation::new(scheme, self.grid(), step, ground, initial)
     }
 
     /// The equilibrium under a source f (in the cells).

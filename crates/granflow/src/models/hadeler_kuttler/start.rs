@@ -5,10 +5,9 @@ use crate::case::{self, Case, CaseError, Method, SchemeName, Sources, TablePlan}
 use crate::hadeler_kuttler::direct::{Equilibrium, Unsteady};
 use crate::hadeler_kuttler::scheme::{FIRST_ORDER, HadelerKuttler, SECOND_ORDER, Slopes};
 use crate::results::{self, Plane};
-use crate::scheme::Side;
+use crate::scheme::{Scheme, Side};
 use crate::simulation::{Simulation, StepSize};
 use crate::site::Site;
-use crate::time::EULER;
 
 /// A table with what is poured on it.
 #[derive(Debug)]
@@ -96,7 +95,8 @@ impl<const D: usize> Sand<D> {
             None => (&self.plan.standing, &self.plan.rolling, 0.0),
         };
         let rates = self.rates(time);
-        self.site.simulation(scheme, super::step_size(case), &rates, (u, v))
+        let simulation = self.site.simulation(scheme, super::step_size(case), &rates, (u, v));
+        simulation.expect("Case::check refuses other grids and steps")
     }
 
     /// Rates of the sources at a time, in the cells; at infinity those that last.
@@ -112,9 +112,10 @@ impl<const D: usize> Sand<D> {
 
     /// What one step of the first-order scheme would change at the equilibrium: max |u_t|, max |v_t|.
     pub fn residual(&self, simulation: &Simulation<D, HadelerKuttler>) -> [f64; 2] {
-        let step = StepSize::Courant(0.45);
+        let step = StepSize::Courant(Scheme::<D, f64>::suggested_courant(&FIRST_ORDER));
         let (ground, state) = (|index| simulation.ground(index), |index| simulation.state(index));
-        let mut step = Simulation::new(FIRST_ORDER, self.site.grid(), EULER, step, ground, state);
+        let mut step = Simulation::new(FIRST_ORDER, self.site.grid(), step, ground, state)
+            .expect("a table has a grid, and the scheme takes this step");
         let done = step.advance(f64::INFINITY);
         let [u, v, _] = step.drift();
         if done.is_ok() { [u, v] } else { [f64::NAN; 2] }

@@ -17,12 +17,9 @@ use crate::savage_hutter::Flow;
 use crate::savage_hutter::balanced::Balanced;
 use crate::savage_hutter::friction::{Cohesion, Coulomb, Law, SamosAt, Voellmy};
 use crate::savage_hutter::ground::{Bed, Chute};
-use crate::savage_hutter::kinetic::{
-    Kinetic, VERFAHREN_1, VERFAHREN_2, VERFAHREN_3, VERFAHREN_4, VERFAHREN_5,
-};
+use crate::savage_hutter::kinetic::{VERFAHREN_1, VERFAHREN_2, VERFAHREN_3, VERFAHREN_4, VERFAHREN_5};
 use crate::scheme::Boundary;
 use crate::simulation::{Simulation, StepSize};
-use crate::time::{EULER, SSP_RK2};
 
 /// Why a case could not be set up.
 #[derive(Debug, thiserror::Error)]
@@ -169,18 +166,22 @@ impl Scene {
             Flow { h, q: std::array::from_fn(|k| h * u[k]) }
         };
         let (step, law, film) = (step_size(case), law(case), case.scheme.film());
-        let kinetic = |published: Kinetic| Kinetic {
-            friction: Coulomb { mu: case.material().friction.mu() },
-            ..published
-        };
         let published = match case.scheme.name {
             SchemeName::Balanced => {
                 let scheme = Balanced::first(law, film);
-                return work.visit(plane, Simulation::new(scheme, grid, EULER, step, ground, state));
+                return work.visit(
+                    plane,
+                    Simulation::new(scheme, grid, step, ground, state)
+                        .expect("Case::check refuses other grids and steps"),
+                );
             }
             SchemeName::Balanced2 => {
                 let scheme = Balanced::second(law, film);
-                return work.visit(plane, Simulation::new(scheme, grid, SSP_RK2, step, ground, state));
+                return work.visit(
+                    plane,
+                    Simulation::new(scheme, grid, step, ground, state)
+                        .expect("Case::check refuses other grids and steps"),
+                );
             }
             SchemeName::Verfahren1 => VERFAHREN_1,
             SchemeName::Verfahren2 => VERFAHREN_2,
@@ -191,7 +192,17 @@ impl Scene {
                 unreachable!("Case::check refuses schemes of another model")
             }
         };
-        work.visit(plane, Simulation::new(kinetic(published), grid, EULER, step, ground, state))
+        work.visit(
+            plane,
+            Simulation::new(
+                published.with(Coulomb { mu: case.material().friction.mu() }),
+                grid,
+                step,
+                ground,
+                state,
+            )
+            .expect("Case::check refuses other grids and steps"),
+        )
     }
 }
 

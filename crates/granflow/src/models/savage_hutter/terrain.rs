@@ -12,7 +12,6 @@ use crate::savage_hutter::ground;
 use crate::scheme::Boundary;
 use crate::simulation::Simulation;
 use crate::terrain::{Curvature, Terrain};
-use crate::time::{EULER, SSP_RK2};
 use std::sync::Arc;
 
 /// More cells than any machine holds.
@@ -59,13 +58,17 @@ impl Mountain {
         let under = Under::Mountain(Arc::new(bed.with_values(Vec::new())));
         let plane = Plane::of(&grid, under, thickness);
         let (law, film) = (law(case), case.scheme.film());
-        let (scheme, stages) = match case.scheme.name {
-            SchemeName::Balanced2 => (Balanced::second(law, film), SSP_RK2),
-            _ => (Balanced::first(law, film), EULER),
+        let scheme = match case.scheme.name {
+            SchemeName::Balanced2 => Balanced::second(law, film),
+            _ => Balanced::first(law, film),
         };
         let ground = move |cell| ground_at(&terrain, gravity, cell);
         let state = move |[i, j]: [usize; 2]| Flow::still(release.get(j * columns + i));
-        work.visit(plane, Simulation::new(scheme, grid, stages, step_size(case), ground, state))
+        work.visit(
+            plane,
+            Simulation::new(scheme, grid, step_size(case), ground, state)
+                .expect("Case::check refuses other grids and steps"),
+        )
     }
 }
 
