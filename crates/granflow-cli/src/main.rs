@@ -4,7 +4,7 @@ use std::path::PathBuf;
 use std::process::ExitCode;
 
 use clap::{Parser, Subcommand};
-use granflow::case::Case;
+use granflow::{Case, Checked};
 
 mod bench;
 mod check;
@@ -133,9 +133,9 @@ fn act(command: Command) -> Result<(), Failure> {
     match command {
         Command::Run { case, out, set, threads, resume, quiet } => {
             let case = read(&case, &set)?;
-            run::run(&case, &run::RunOptions { out, threads, resume, quiet })
+            run::run(case, &run::RunOptions { out, threads, resume, quiet })
         }
-        Command::Check { case, set } => check::check(&read(&case, &set)?),
+        Command::Check { case, set } => check::check(read(&case, &set)?),
         Command::New { list: true, .. } => new::list(),
         Command::New { kind: None, .. } => {
             Err(Failure::usage("which kind of case?", "granflow new --list shows the kinds"))
@@ -150,8 +150,6 @@ fn act(command: Command) -> Result<(), Failure> {
 }
 
 /// Reads a case with its overrides and checks it.
-fn read(path: &std::path::Path, overrides: &[String]) -> Result<Case, Failure> {
-    let case = Case::load_with(path, overrides)?;
-    case.check()?;
-    Ok(case)
+fn read(path: &std::path::Path, overrides: &[String]) -> Result<Checked, Failure> {
+    Ok(Case::read_with(path, overrides)?.check()?)
 }

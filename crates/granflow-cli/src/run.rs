@@ -3,10 +3,11 @@
 use std::num::NonZeroUsize;
 use std::path::{Path, PathBuf};
 
-use granflow::case::{Case, Model};
 use granflow::output::summary::StopReason;
 use granflow::results::{FILM_SHARE, Finished};
-use granflow::run::{self, Options};
+use granflow::run::Run;
+use granflow::session::Options;
+use granflow::Checked;
 
 use crate::failure::{Failure, print};
 use crate::interrupt;
@@ -27,15 +28,14 @@ pub struct RunOptions {
 
 impl RunOptions {
     /// The folder of the results: `--out`, else the case's name in the current folder.
-    pub fn directory(&self, case: &Case) -> PathBuf {
-        let name =
-            || Path::new(case.source_name()).file_stem().map_or_else(|| "result".into(), PathBuf::from);
+    pub fn directory(&self, case: &str) -> PathBuf {
+        let name = || Path::new(case).file_stem().map_or_else(|| "result".into(), PathBuf::from);
         self.out.clone().unwrap_or_else(name)
     }
 }
 
 /// Computes a case, writes its results and says in one line how it ended.
-pub fn run(case: &Case, options: &RunOptions) -> Result<(), Failure> {
+pub fn run(case: Checked, options: &RunOptions) -> Result<(), Failure> {
     let finished = compute(case, options)?;
     if options.quiet { Ok(()) } else { print(&format!("{}\n", line(&finished))) }
 }
@@ -55,21 +55,16 @@ fn line(finished: &Finished) -> String {
 }
 
 /// Computes a case and writes its results, also those of a run that was interrupted.
-pub fn compute(case: &Case, options: &RunOptions) -> Result<Finished, Failure> {
+pub fn compute(case: Checked, options: &RunOptions) -> Result<Finished, Failure> {
     let stop = interrupt::listen()?;
-    let mut progress = Progress::new(options.quiet);
-    let (end, sand) = (case.time.end, case.model == Model::HadelerKuttler);
+    let mut progress = Progress::new(options.quiet, case.plan().ends.time);
     let options = Options {
-        directory: options.directory(case),
+        directory: options.directory(case.plan().source_name()),
         threads: options.threads.map_or(0, NonZeroUsize::get),
         resume: options.resume,
         command: std::env::args().collect::<Vec<_>>().join(" "),
     };
-    let mut report = |status: &run::Status| {
-        let run::Status { time, step, wet_cells, max_speed } = *status;
-        progress.show(&Status { time, end, step, wet_cells, most: max_speed, sand });
-    };
-    let finished = run::run(case, &options, stop, &mut report);
+    let finished = case.compute(&options, stop, &mut |run: &dyn Run| progress.show(run));
     progress.finish();
     let finished = finished?;
     let summary = &finished.summary;
@@ -77,7 +72,7 @@ pub fn compute(case: &Case, options: &RunOptions) -> Result<Finished, Failure> {
         eprintln!(
             "warning: {:.2} % of the mass is in films thinner than {:e}; a smaller scheme.film moves them",
             100.0 * summary.film_share(),
-            case.scheme.film()
+            finished.film
         );
     }
     if summary.stop_reason == StopReason::Interrupted {

@@ -1,21 +1,53 @@
-//! From a case of growing sandpiles to a simulation: table, transport rays, sources, layers at the start.
+//! A growing sandpile: from a checked case to a run, and what is poured while it goes.
 
-use super::SetupError;
-use crate::case::{self, Case, CaseError, Method, SchemeName, Sources, TablePlan};
-use crate::hadeler_kuttler::direct::{Equilibrium, Unsteady};
-use crate::hadeler_kuttler::scheme::{FIRST_ORDER, HadelerKuttler, SECOND_ORDER, Slopes};
-use crate::results::{self, Plane};
-use crate::scheme::{Scheme, Side};
-use crate::simulation::{Simulation, StepSize};
-use crate::site::Site;
+use super::plane::Table;
+use super::pouring::Pouring;
+use super::site::Site;
+use crate::StartError;
+use crate::results::Plane;
+use crate::run::{CellOf, Run, Simulated};
+use granflow_case::kinds::sandpile::{Pile, Plan, Poured, SchemeName, Sources, TablePlan};
+use granflow_case::{Axis, Grid, RunPlan, Stepping, Until};
+use granflow_engine::simulation::{Simulation, StepSize};
+use granflow_model::hadeler_kuttler::direct::{Equilibrium, Unsteady};
+use granflow_model::hadeler_kuttler::scheme::{FIRST_ORDER, HadelerKuttler, SECOND_ORDER, Slopes};
+use granflow_model::scheme::Side;
+
+/// The run of a case of growing sandpiles.
+pub(crate) fn start(run: &RunPlan, plan: Plan) -> Result<Box<dyn Run>, StartError> {
+    let Plan { scheme, theta_exponent, grid, poured } = plan;
+    let scheme = match scheme {
+        SchemeName::FirstOrder => FIRST_ORDER,
+        SchemeName::SecondOrder => SECOND_ORDER,
+        SchemeName::Adaptive => HadelerKuttler { slopes: Slopes::Adaptive { exponent: theta_exponent } },
+    };
+    match poured {
+        Poured::Line(pile) => on(run, &grid, *pile, scheme),
+        Poured::Plane(pile) => on(run, &grid, *pile, scheme),
+    }
+}
+
+fn on<const D: usize>(
+    run: &RunPlan,
+    grid: &Grid,
+    pile: Pile<D>,
+    scheme: HadelerKuttler,
+) -> Result<Box<dyn Run>, StartError> {
+    let sand = Sand::new(run, grid, pile)?;
+    // At its equilibrium a pile is the first-order scheme's.
+    let scheme = if sand.equilibrium.is_some() { FIRST_ORDER } else { scheme };
+    let simulation = sand.simulation(run, scheme)?;
+    let plane = sand.plane();
+    Ok(Box::new(Simulated::new(simulation, Pouring::new(sand, run.scheme), plane)))
+}
 
 /// A table with what is poured on it.
 #[derive(Debug)]
-pub struct Sand<const D: usize> {
+pub(super) struct Sand<const D: usize> {
     /// The case's table in plain numbers.
-    pub plan: TablePlan<D>,
-    /// The table, laid out.
-    pub site: Site<D>,
+    plan: TablePlan<D>,
+    /// The table with sizes and heights.
+    site: Site<D>,
     /// What is poured, and when.
     pub sources: Sources,
     /// The equilibrium, where the case asks for it without stepping.
@@ -23,40 +55,36 @@ pub struct Sand<const D: usize> {
 }
 
 impl<const D: usize> Sand<D> {
-    /// Evaluates what the case says.
-    ///
-    /// # Errors
-    /// [`CaseError`] for a table or a source that cannot be used.
-    pub(super) fn load(case: &Case, grid: &case::Grid) -> Result<Self, SetupError> {
-        let plan = case.table()?;
-        let sources = case.sources(&plan)?;
+    fn new(run: &RunPlan, grid: &Grid, Pile { table: plan, sources }: Pile<D>) -> Result<Self, StartError> {
         let axes = [Some(&grid.x), grid.y.as_ref()];
-        let size = std::array::from_fn(|k| axes[k].map_or(1.0, case::Axis::width));
+        let size = std::array::from_fn(|k| axes[k].map_or(1.0, Axis::width));
         let origin = std::array::from_fn(|k| axes[k].map_or(0.0, |axis| axis.from));
         let site = Site::new(plan.table.clone(), origin, size, plan.height.clone());
         let mut sand = Sand { site, sources, equilibrium: None, plan };
-        if case.time.method == Some(Method::Direct) {
-            sand.equilibrium = Some(sand.steady(case)?);
+        if run.ends.until == Some(Until::Equilibrium) {
+            sand.equilibrium = Some(sand.steady(run)?);
         }
         Ok(sand)
     }
 
-    fn steady(&self, case: &Case) -> Result<Equilibrium<D>, CaseError> {
+    fn steady(&self, run: &RunPlan) -> Result<Equilibrium<D>, StartError> {
         let fault = |key: &str, error: String| {
-            case.fault(key, error, "or let it grow: time.until = \"steady\" with an end, and no method")
+            run.fault(key, error, "or let it grow: time.until = \"steady\" with an end, and no method")
         };
         let Some(source) = self.sources.lasting() else {
-            return Err(fault("time.method", "a source changes for ever, so nothing is ever steady".into()));
+            let message = "a source changes for ever, so nothing is ever steady";
+            return Err(fault("time.method", message.into()).into());
         };
         let found = self.site.equilibrium(&source);
-        found.map_err(|error: Unsteady<D>| {
+        let found = found.map_err(|error: Unsteady<D>| {
             let steep = matches!(error, Unsteady::Steep { .. });
             fault(if steep { "table.height" } else { "time.method" }, error.to_string())
-        })
+        });
+        Ok(found?)
     }
 
-    /// Where its cells and nodes lie, for the files.
-    pub fn plane(&self) -> Plane {
+    /// Where its cells and nodes are, for the files.
+    fn plane(&self) -> Plane {
         let (cells, nodes) = (&self.plan.centres, &self.plan.nodes);
         let walls = |axis: usize| {
             let mut counts = cells.counts();
@@ -68,35 +96,32 @@ impl<const D: usize> Sand<D> {
             if walls.contains(&true) { walls } else { Vec::new() }
         };
         let flat = self.plan.height.iter().all(|height| *height == 0.0);
-        Plane::table(
-            cells.x.clone(),
-            cells.y.clone().unwrap_or_default(),
-            results::Table {
-                x_node: nodes.x.clone(),
-                y_node: nodes.y.clone().unwrap_or_default(),
-                inside: (0..self.plan.rolling.len()).map(|cell| self.plan.inside(cell)).collect(),
-                height: if flat { Vec::new() } else { self.plan.height.clone() },
-                wall_x: walls(0),
-                wall_y: if D > 1 { walls(1) } else { Vec::new() },
-            },
-        )
+        let table = Table {
+            x_node: nodes.x.clone(),
+            y_node: nodes.y.clone().unwrap_or_default(),
+            inside: (0..self.plan.rolling.len()).map(|cell| self.plan.inside(cell)).collect(),
+            height: if flat { Vec::new() } else { self.plan.height.clone() },
+            wall_x: walls(0),
+            wall_y: if D > 1 { walls(1) } else { Vec::new() },
+        };
+        Plane::table(cells.x.clone(), cells.y.clone().unwrap_or_default(), table)
     }
 
     /// The simulation that the case asks for; at its equilibrium if that is known.
-    pub fn simulation(&self, case: &Case) -> Simulation<D, HadelerKuttler> {
-        let scheme = match case.scheme.name {
-            _ if self.equilibrium.is_some() => FIRST_ORDER,
-            SchemeName::FirstOrder => FIRST_ORDER,
-            SchemeName::SecondOrder => SECOND_ORDER,
-            _ => HadelerKuttler { slopes: Slopes::Adaptive { exponent: case.scheme.theta_exponent() } },
-        };
+    fn simulation(
+        &self,
+        run: &RunPlan,
+        scheme: HadelerKuttler,
+    ) -> Result<Simulation<D, HadelerKuttler>, StartError> {
         let (u, v, time) = match &self.equilibrium {
             Some(found) => (&found.u, &found.v, f64::INFINITY),
             None => (&self.plan.standing, &self.plan.rolling, 0.0),
         };
-        let rates = self.rates(time);
-        let simulation = self.site.simulation(scheme, super::step_size(case), &rates, (u, v));
-        simulation.expect("Case::check refuses other grids and steps")
+        let step = match run.stepping {
+            Stepping::Fixed(dt) => StepSize::Fixed(dt),
+            Stepping::Courant(courant) => StepSize::Courant(courant),
+        };
+        Ok(self.site.simulation(scheme, step, &self.rates(time), (u, v))?)
     }
 
     /// Rates of the sources at a time, in the cells; at infinity those that last.
@@ -110,15 +135,25 @@ impl<const D: usize> Sand<D> {
         simulation.change_grounds(|index, _| self.site.ground(index, &rates));
     }
 
+    /// The source f in every cell of the table, as it flows now.
+    pub fn poured(&self, simulation: &Simulation<D, HadelerKuttler>) -> Vec<f64> {
+        let cells = simulation.grid().cells.map(|nodes| nodes - 1);
+        let mut values = vec![0.0; cells.iter().product()];
+        simulation.fill(cells[0], 0, &mut values, |cell: &CellOf<D, HadelerKuttler>| {
+            cell.ground.source.iter().sum()
+        });
+        values
+    }
+
     /// What one step of the first-order scheme would change at the equilibrium: max |u_t|, max |v_t|.
     pub fn residual(&self, simulation: &Simulation<D, HadelerKuttler>) -> [f64; 2] {
-        let step = StepSize::Courant(Scheme::<D, f64>::suggested_courant(&FIRST_ORDER));
+        let step = StepSize::Courant(0.45);
         let (ground, state) = (|index| simulation.ground(index), |index| simulation.state(index));
-        let mut step = Simulation::new(FIRST_ORDER, self.site.grid(), step, ground, state)
-            .expect("a table has a grid, and the scheme takes this step");
+        let step = Simulation::new(FIRST_ORDER, self.site.grid(), step, ground, state);
+        let Ok(mut step) = step else { return [f64::NAN; 2] };
         let done = step.advance(f64::INFINITY);
-        let [u, v, _] = step.drift();
-        if done.is_ok() { [u, v] } else { [f64::NAN; 2] }
+        let drift = step.drift();
+        if done.is_ok() { [drift[0], drift[1]] } else { [f64::NAN; 2] }
     }
 
     /// Volume per time that falls over the left, right, bottom and top edges and into holes at the equilibrium.

@@ -1,85 +1,82 @@
-//! From a case of an avalanche on a mountain to a simulation: elevation, releases, the ground of every cell.
+//! An avalanche on a mountain, SI units: from a checked case to a run.
 
-use super::{SetupError, Visit, law, step_size};
-use crate::case::{self, Case, SchemeName};
-use crate::grid::Grid;
-use crate::raster::{Crs, Raster};
-use crate::release::{self, Sparse};
-use crate::results::{Plane, Under};
-use crate::savage_hutter::Flow;
-use crate::savage_hutter::balanced::Balanced;
-use crate::savage_hutter::ground;
-use crate::scheme::Boundary;
-use crate::simulation::Simulation;
-use crate::terrain::{Curvature, Terrain};
+use super::chute::step_size;
+use super::flowing::Flowing;
+use super::plane::Mountain;
+use crate::StartError;
+use crate::results::Plane;
+use crate::run::{Run, Simulated};
+use granflow_case::RunPlan;
+use granflow_case::kinds::terrain::{From, Measured, Order, Plan, Release, Thickness};
+use granflow_engine::grid::Grid;
+use granflow_engine::simulation::Simulation;
+use granflow_geo::raster::{Crs, Raster};
+use granflow_geo::release::{self, Sparse};
+use granflow_geo::terrain::{Curvature, Terrain};
+use granflow_model::savage_hutter::balanced::Balanced;
+use granflow_model::savage_hutter::{Flow, ground};
+use granflow_model::scheme::Boundary;
 use std::sync::Arc;
 
 /// More cells than any machine holds.
-const MOST_CELLS: f64 = (1_u64 << 36) as f64;
+const MAX_CELLS: f64 = (1_u64 << 36) as f64;
 
-/// A mountain, SI units, with what is released on it.
-#[derive(Debug)]
-pub struct Mountain {
-    /// The bed.
-    pub terrain: Terrain,
-    /// Released volume per plan area H \[m\].
-    pub release: Sparse,
+/// The run of a case on a mountain.
+pub(crate) fn start(run: &RunPlan, plan: &Plan) -> Result<Box<dyn Run>, StartError> {
+    let (terrain, release) = load(run, plan)?;
+    simulate(run, plan, terrain, release)
 }
 
-impl Mountain {
-    /// Reads elevation and releases.
-    ///
-    /// # Errors
-    /// [`SetupError`] at the first file or key that cannot be used.
-    pub(super) fn load(case: &Case, terrain: &case::Terrain) -> Result<Self, SetupError> {
-        let terrain = bed(case, terrain)?;
-        let mut release = Sparse::default();
-        for (number, one) in case.release.iter().enumerate() {
-            release = release.plus(volume(case, one, number, &terrain)?);
-        }
-        trim();
-        Ok(Mountain { terrain, release })
-    }
-
-    /// The simulation that the case asks for, handed to `work`. The derivatives of the bed are fitted cell by cell as the
-    /// simulation asks for its grounds.
-    pub(super) fn simulate<V: Visit>(self, case: &Case, work: V) -> V::Output {
-        let Mountain { terrain, release } = self;
-        let (bed, gravity) = (&terrain.bed, case.gravity());
-        let columns = bed.columns;
-        let grid = Grid {
-            cells: [bed.columns, bed.rows],
-            origin: [bed.west, bed.south],
-            size: [bed.cell; 2],
-            boundary: [[Boundary::Absorbing; 2]; 2],
-        };
-        let thickness = release.map(|cell, volume| volume * terrain.fit(bed.place(cell)).cosine());
-        // The grounds hold the elevation from here on.
-        let under = Under::Mountain(Arc::new(bed.with_values(Vec::new())));
-        let plane = Plane::of(&grid, under, thickness);
-        let (law, film) = (law(case), case.scheme.film());
-        let scheme = match case.scheme.name {
-            SchemeName::Balanced2 => Balanced::second(law, film),
-            _ => Balanced::first(law, film),
-        };
-        let ground = move |cell| ground_at(&terrain, gravity, cell);
-        let state = move |[i, j]: [usize; 2]| Flow::still(release.get(j * columns + i));
-        work.visit(
-            plane,
-            Simulation::new(scheme, grid, step_size(case), ground, state)
-                .expect("Case::check refuses other grids and steps"),
-        )
-    }
+/// The run on a mountain that was read. The derivatives of the bed are fitted cell by cell as the simulation asks for its
+/// grounds.
+pub(super) fn simulate(
+    run: &RunPlan,
+    plan: &Plan,
+    terrain: Terrain,
+    release: Sparse,
+) -> Result<Box<dyn Run>, StartError> {
+    let (bed, gravity) = (&terrain.bed, plan.material.gravity);
+    let columns = bed.columns;
+    let grid = Grid {
+        cells: [bed.columns, bed.rows],
+        origin: [bed.west, bed.south],
+        size: [bed.cell; 2],
+        boundary: [[Boundary::Absorbing; 2]; 2],
+    };
+    let thickness = release.map(|cell, volume| volume * terrain.fit(bed.place(cell)).cosine());
+    // The grounds hold the elevation from here on.
+    let under = Mountain::new(bed.with_values(Vec::new()), plan.material.density);
+    let plane = Plane::of(&grid, Arc::new(under), thickness);
+    let (law, film) = (plan.material.law, plan.film);
+    let scheme = match plan.scheme {
+        Order::First => Balanced::first(law, film),
+        Order::Second => Balanced::second(law, film),
+    };
+    let ground = move |cell| ground_at(&terrain, gravity, cell);
+    let state = move |[i, j]: [usize; 2]| Flow::still(release.get(j * columns + i));
+    let simulation = Simulation::new(scheme, grid, step_size(run), ground, state)?;
+    Ok(Box::new(Simulated::new(simulation, Flowing::new(run.scheme, film, true), plane)))
 }
 
 /// The ground of a cell of a mountain under `gravity` \[m/s^2\], by column and row, the first row in the south.
-pub fn ground_at(mountain: &Terrain, gravity: f64, [column, row]: [usize; 2]) -> ground::Terrain<2, f64> {
+pub(crate) fn ground_at(mountain: &Terrain, gravity: f64, [column, row]: [usize; 2]) -> ground::Terrain<2, f64> {
     let level = mountain.bed.at(column, row);
     if level.is_nan() {
         return ground::Terrain::nothing(gravity);
     }
     let fit = mountain.fit([column, row]);
     ground::Terrain::of(level, fit.gradient, fit.cosine(), fit.hessian, gravity)
+}
+
+/// Elevation, and released volume per plan area H \[m\].
+pub(super) fn load(run: &RunPlan, plan: &Plan) -> Result<(Terrain, Sparse), StartError> {
+    let terrain = bed(run, plan)?;
+    let mut release = Sparse::default();
+    for one in &plan.releases {
+        release = release.plus(volume(one, &terrain)?);
+    }
+    trim();
+    Ok((terrain, release))
 }
 
 /// Hands back to the system what reading has left: the allocator would keep it for more of the same, and none will come.
@@ -92,60 +89,51 @@ fn trim() {
 }
 
 /// The elevation on the cells that the case asks for.
-fn bed(case: &Case, terrain: &case::Terrain) -> Result<Terrain, SetupError> {
-    let crs = match &terrain.crs {
+fn bed(run: &RunPlan, plan: &Plan) -> Result<Terrain, StartError> {
+    let crs = match &plan.crs {
         Some(text) => Some(Crs::parse(text).map_err(|error| {
-            case.fault("terrain.crs", error.to_string(), "write it as crs = \"EPSG:31287\"")
+            run.fault("terrain.crs", error.to_string(), "write it as crs = \"EPSG:31287\"")
         })?),
         None => None,
     };
-    let mut bed = Raster::read_in(&case.resolve(&terrain.dem), crs.as_ref())?;
+    let mut bed = Raster::read_in(&plan.dem, crs.as_ref())?;
     let [width, height] = [bed.columns, bed.rows].map(|count| count as f64 * bed.cell);
-    if let Some(cell) = terrain.cell {
+    if let Some(cell) = plan.cell {
         let [columns, rows] = [width / cell, height / cell];
-        if columns < 3.0 || rows < 3.0 || columns * rows > MOST_CELLS {
+        if columns < 3.0 || rows < 3.0 || columns * rows > MAX_CELLS {
             let message = format!(
                 "cells of {cell} m cut the terrain of {width} m x {height} m into {columns:.1} x {rows:.1}"
             );
             let cure = "allowed are at least 3 along each side, and not more than a machine holds";
-            return Err(case.fault("terrain.cell", message, cure).into());
+            return Err(run.fault("terrain.cell", message, cure).into());
         }
         bed = bed.resample(cell);
     }
-    if let Some(length) = terrain.curvature.length().filter(|length| *length > width.min(height)) {
+    if let Some(length) = plan.curvature.filter(|length| *length > width.min(height)) {
         let message = format!("a window of {length} m is wider than the terrain of {width} m x {height} m");
         let cure = "the window spans a few cells, for instance length = \"20 m\"";
-        return Err(case.fault("terrain.curvature.length", message, cure).into());
+        return Err(run.fault("terrain.curvature.length", message, cure).into());
     }
-    let curvature = terrain.curvature.length().map_or(Curvature::Off, Curvature::Length);
+    let curvature = plan.curvature.map_or(Curvature::Off, Curvature::Length);
     Ok(Terrain::new(bed, curvature))
 }
 
 /// Volume per plan area that one release gives to the cells.
-fn volume(case: &Case, one: &case::Release, number: usize, terrain: &Terrain) -> Result<Sparse, SetupError> {
-    let thickness = match &one.thickness {
-        Some(case::Thickness::Constant(value)) => Some(release::Thickness::Value(*value)),
-        Some(case::Thickness::Attribute(name)) => Some(release::Thickness::Attribute(name.attribute.clone())),
-        None => None,
-    };
-    let missing = || {
-        case.fault(
-            &format!("release.{number}"),
-            "the release says neither where nor how thick",
-            "give polygons with a thickness, a raster, or a cap",
-        )
-    };
-    let cells = match (&one.polygons, &one.raster, &one.cap) {
-        (Some(path), None, None) => {
-            release::polygons(&case.resolve(path), &thickness.ok_or_else(missing)?, &terrain.bed)?
+fn volume(one: &Release, terrain: &Terrain) -> Result<Sparse, StartError> {
+    let cells = match &one.from {
+        From::Polygons { path, thickness } => {
+            let thickness = match thickness {
+                Thickness::Constant(value) => release::Thickness::Value(*value),
+                Thickness::Attribute(name) => release::Thickness::Attribute(name.attribute.clone()),
+            };
+            release::polygons(path, &thickness, &terrain.bed)?
         }
-        (None, Some(path), None) => release::raster(&case.resolve(path), &terrain.bed)?,
-        (None, None, Some(cap)) => release::cap(cap.height, cap.centre, cap.radius, &terrain.bed)?,
-        _ => return Err(missing().into()),
+        From::Raster(path) => release::raster(path, &terrain.bed)?,
+        From::Cap(cap) => release::cap(cap.height, cap.centre, cap.radius, &terrain.bed)?,
     };
     let measured = match one.measured {
-        case::Measured::Normal => release::Measured::Normal,
-        case::Measured::Vertical => release::Measured::Vertical,
+        Measured::Normal => release::Measured::Normal,
+        Measured::Vertical => release::Measured::Vertical,
     };
     Ok(release::per_plan_area(cells, terrain, measured))
 }

@@ -1,33 +1,36 @@
-//! What a sandpile would compute: table, sources, layers at the start.
+//! What a growing sandpile would compute: table, sources, layers at the start.
 
-use granflow::case::{Axis, Case, Edge, TablePlan};
-use granflow::hadeler_kuttler::scheme::HadelerKuttler;
-use granflow::simulation::Simulation;
-
-use super::{axis_line, describe, effort, range};
-use crate::failure::Failure;
+use crate::describe::{Line, axis, case, effort, range};
+use granflow_case::kinds::sandpile::{Edge, Pile, Plan, Poured, SchemeName, TablePlan};
+use granflow_case::{Axis, RunPlan, Until};
+use granflow_engine::simulation::Simulation;
+use granflow_model::hadeler_kuttler::scheme::HadelerKuttler;
 
 /// The lines about a sandpile.
-pub(super) fn lines(case: &Case) -> Result<Vec<(&'static str, String)>, Failure> {
-    case.check()?;
-    match case.grid.as_ref().and_then(|grid| grid.y.as_ref()) {
-        None => table_lines::<1>(case),
-        Some(_) => table_lines::<2>(case),
+pub(crate) fn lines(run: &RunPlan, plan: &Plan) -> Vec<Line> {
+    let scheme = match plan.scheme {
+        SchemeName::FirstOrder => "first order, ".to_owned(),
+        SchemeName::SecondOrder => "second order, ".to_owned(),
+        SchemeName::Adaptive => {
+            format!("second order away from steady states, theta_exponent {}, ", plan.theta_exponent)
+        }
+    };
+    let mut lines = case(run, Vec::new(), &scheme);
+    let axes: Vec<&Axis> = [Some(&plan.grid.x), plan.grid.y.as_ref()].into_iter().flatten().collect();
+    for (name, along) in ["x", "y"].into_iter().zip(&axes) {
+        lines.push((if name == "x" { "grid" } else { "" }, axis(name, along)));
     }
+    match &plan.poured {
+        Poured::Line(pile) => lines.extend(on(run, pile, &axes)),
+        Poured::Plane(pile) => lines.extend(on(run, pile, &axes)),
+    }
+    lines
 }
 
-fn table_lines<const D: usize>(case: &Case) -> Result<Vec<(&'static str, String)>, Failure> {
-    let plan = case.table::<D>()?;
-    let sources = case.sources(&plan)?;
-    let mut lines = describe(case);
-    let axes: Vec<&Axis> =
-        case.grid.iter().flat_map(|grid| [Some(&grid.x), grid.y.as_ref()]).flatten().collect();
-    for (name, axis) in ["x", "y"].into_iter().zip(&axes) {
-        lines.push((if name == "x" { "grid" } else { "" }, axis_line(name, axis)));
-    }
+fn on<const D: usize>(run: &RunPlan, Pile { table: plan, sources }: &Pile<D>, axes: &[&Axis]) -> Vec<Line> {
     let cell: f64 = axes.iter().map(|axis| axis.width()).product();
     let count = plan.table.count();
-    lines.push(("table", format!("{count} cells, {:.6} in all, {}", count as f64 * cell, edges(&plan))));
+    let mut lines = vec![("table", format!("{count} cells, {:.6} in all, {}", count as f64 * cell, edges(plan)))];
     let (low, high) = range(&plan.height);
     if (low, high) != (0.0, 0.0) {
         lines.push(("", format!("{low} to {high} high")));
@@ -40,16 +43,15 @@ fn table_lines<const D: usize>(case: &Case) -> Result<Vec<(&'static str, String)
     }
     let [u, v] = [&plan.standing, &plan.rolling].map(|layer| range(layer).1);
     lines.push(("layers", format!("at the start standing up to {u}, rolling up to {v}")));
-    if case.time.method.is_some() {
+    if run.ends.until == Some(Until::Equilibrium) {
         lines.push(("steps", "none".to_owned()));
     } else {
         // The paper's bound along each axis, dt max(1, max v)/h: slopes are at most 1.
         let rate = axes.iter().map(|axis| v.max(1.0) / axis.width()).sum();
-        let bytes = plan.nodes.counts().iter().product::<usize>()
-            * Simulation::<D, HadelerKuttler>::bytes_per_cell(false);
-        lines.extend(effort(case, bytes, rate));
+        let nodes: usize = plan.nodes.counts().iter().product();
+        lines.extend(effort(run, nodes * Simulation::<D, HadelerKuttler>::bytes_per_cell(false), rate));
     }
-    Ok(lines)
+    lines
 }
 
 /// How many edges of each kind there are, open and walls.

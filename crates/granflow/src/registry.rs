@@ -1,0 +1,25 @@
+//! The models that a case can ask for: one line for each kind of case, nothing else knows them.
+
+use crate::models::{hadeler_kuttler, savage_hutter};
+use crate::run::Run;
+use crate::StartError;
+use crate::describe::Line;
+use granflow_case::{Kind, RunPlan};
+
+/// The run of a checked case.
+pub(crate) fn start(run: &RunPlan, kind: Kind) -> Result<Box<dyn Run>, StartError> {
+    match kind {
+        Kind::Chute(plan) => savage_hutter::chute::start(run, plan),
+        Kind::Terrain(plan) => savage_hutter::terrain::start(run, &plan),
+        Kind::Sandpile(plan) => hadeler_kuttler::start::start(run, plan),
+    }
+}
+
+/// What a checked case would compute.
+pub(crate) fn describe(run: &RunPlan, kind: Kind) -> Result<Vec<Line>, StartError> {
+    match kind {
+        Kind::Chute(plan) => savage_hutter::describe::chute(run, plan),
+        Kind::Terrain(plan) => savage_hutter::describe::terrain(run, &plan),
+        Kind::Sandpile(plan) => Ok(hadeler_kuttler::describe::lines(run, &plan)),
+    }
+}
