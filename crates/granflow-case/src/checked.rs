@@ -91,6 +91,14 @@ pub struct Ends {
     pub kinetic_energy: Option<f64>,
 }
 
+impl Ends {
+    /// A note on a run that steps until something happens, if it may never.
+    pub(crate) fn note(&self) -> Option<String> {
+        let limited = self.time.is_some() || self.steps.is_some() || self.until == Some(Until::Equilibrium);
+        (!limited).then(|| "the run has no time limit; time.end sets one".to_owned())
+    }
+}
+
 /// The state a run waits for.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Until {
@@ -126,54 +134,4 @@ pub enum Frames {
     Steps(u64),
     /// At the start and at the end only, since the end is not known beforehand.
     Ends,
-}
-
-#[cfg(any())] // follows with the kinds
-mod skeleton_of_the_kinds {
-    /// One variant for each kind of case, from the list in `kinds.rs`.
-    pub enum Kind {
-        Chute(chute::Plan),
-        Terrain(terrain::Plan),
-        Sandpile(sandpile::Plan),
-    }
-
-    /// kinds/chute: savage_hutter on [grid].
-    pub struct Plan {
-        /// Cells along x and y.
-        pub grid: Grid, // { x: Axis, y: Option<Axis> }
-        /// What happens at the low and high end of x and y.
-        pub sides: [[Side; 2]; 2],
-        /// Slope zeta at the centre of every column of cells, in radians, and mean curvature kappa over it.
-        pub zeta: Vec<f64>,
-        pub kappa: Vec<f64>,
-        pub material: Material, // plain numbers: epsilon, k, eta, gravity, density, law: granflow_model Law
-        pub scheme: SchemeName, // avalanche::SchemeName: Balanced, Balanced2, Verfahren1..5
-        pub film: f64,
-        /// thickness, velocity_x, velocity_y of every cell, x fastest.
-        pub initial: InitialState,
-    }
-
-    /// kinds/terrain: savage_hutter on [terrain].
-    pub struct Plan {
-        /// Paths are resolved against the case's folder.
-        pub dem: PathBuf,
-        pub crs: Option<String>,
-        pub cell: Option<f64>,
-        /// Span of the window of the curvature, `None` for "off".
-        pub curvature: Option<f64>,
-        pub releases: Vec<Release>, // { from: Polygons { path, thickness } | Raster(path) | Cap(cap), measured }
-        pub gravity: f64,
-        pub density: f64,
-        pub law: Law,
-        pub scheme: SchemeName, // Balanced | Balanced2 only
-        pub film: f64,
-    }
-
-    /// kinds/sandpile: hadeler_kuttler on [grid].
-    pub struct Plan {
-        pub scheme: SchemeName, // FirstOrder | SecondOrder | Adaptive
-        pub theta_exponent: f64,
-        pub grid: Grid,
-        pub poured: Poured, // Line(Box<Pile<1>>) | Plane(Box<Pile<2>>), Pile<D> { table: TablePlan<D>, sources: Sources }
-    }
 }
