@@ -9,13 +9,13 @@ use serde::{Deserialize, Deserializer};
 
 /// The short way of writing a value.
 #[derive(Debug, Clone, Copy)]
-pub(super) enum Plain<'a> {
+pub(crate) enum Plain<'a> {
     Number(f64),
     Text(&'a str),
 }
 
 /// Reads a number or a word; `expected` names what is allowed.
-pub(super) fn plain<'de, D, V, F>(from: D, expected: &str, read: F) -> Result<V, D::Error>
+pub(crate) fn plain<'de, D, V, F>(from: D, expected: &str, read: F) -> Result<V, D::Error>
 where
     D: Deserializer<'de>,
     F: FnOnce(Plain) -> Result<V, String>,
@@ -24,7 +24,7 @@ where
 }
 
 /// Reads a number or a word by `read`, or a table as a `T` by `table`; `expected` names what is allowed.
-pub(super) fn plain_or_table<'de, D, T, V, F, G>(
+pub(crate) fn plain_or_table<'de, D, T, V, F, G>(
     from: D,
     expected: &str,
     read: F,

@@ -33,7 +33,7 @@ struct Fault {
 
 impl CaseError {
     /// An error at a place of a text; `name` is the file's name, or the command-line argument the text came from.
-    pub(super) fn new(
+    pub(crate) fn new(
         name: &str,
         text: &str,
         span: Option<Range<usize>>,
@@ -52,24 +52,24 @@ impl CaseError {
     }
 
     /// A file that cannot be read, with no place in a case.
-    pub(super) fn unreadable(name: &str, message: String) -> Self {
+    pub(crate) fn unreadable(name: &str, message: String) -> Self {
         Self::new(name, "", None, "", message).file()
     }
 
     /// Marks the error as one of reading a file.
-    pub(super) fn file(mut self) -> Self {
+    pub(crate) fn file(mut self) -> Self {
         self.0.kind = CaseErrorKind::File;
         self
     }
 
     /// Adds a line of help: what is allowed, or what to do.
-    pub(super) fn help(mut self, line: impl Into<String>) -> Self {
+    pub(crate) fn help(mut self, line: impl Into<String>) -> Self {
         self.0.help.push(line.into());
         self
     }
 
     /// Adds `did you mean ...?` and the list of what is allowed.
-    pub(super) fn allowed<'a>(self, found: &str, allowed: impl IntoIterator<Item = &'a str>) -> Self {
+    pub(crate) fn allowed<'a>(self, found: &str, allowed: impl IntoIterator<Item = &'a str>) -> Self {
         let list: Vec<&str> = allowed.into_iter().collect();
         let error = match nearest(found, list.iter().copied()) {
             Some(near) => self.help(format!("did you mean `{near}`?")),
@@ -155,7 +155,7 @@ impl std::error::Error for CaseError {}
 /// What is wrong with a part of a case that does not know where it stands: the key below it (with the bytes of a
 /// formula), the message, and whether a file is to blame.
 #[derive(Debug)]
-pub(super) struct PartFault {
+pub(crate) struct PartFault {
     pub key: &'static str,
     pub part: Option<Range<usize>>,
     pub message: String,
@@ -163,18 +163,18 @@ pub(super) struct PartFault {
 }
 
 impl PartFault {
-    pub(super) fn new(key: &'static str, message: impl Into<String>) -> Self {
+    pub(crate) fn new(key: &'static str, message: impl Into<String>) -> Self {
         Self { key, part: None, message: message.into(), file: false }
     }
 
     /// A formula that cannot be read.
-    pub(super) fn formula(key: &'static str, error: FormulaError) -> Self {
+    pub(crate) fn formula(key: &'static str, error: FormulaError) -> Self {
         let FormulaError { message, at, length } = error;
         Self { key, part: Some(at..at + length), message, file: false }
     }
 
     /// Blames a file.
-    pub(super) fn file(self) -> Self {
+    pub(crate) fn file(self) -> Self {
         Self { file: true, ..self }
     }
 }

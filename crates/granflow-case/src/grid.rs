@@ -1,7 +1,13 @@
-//! `[grid]`: the cells of a scaled case and what happens at its edges.
+//! `[grid]`: the cells of a scaled case.
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
+
+use super::fault::CaseError;
+use super::look::Look;
+
+/// More cells than any machine holds.
+const MAX_CELLS: u64 = 1 << 36;
 
 /// A regular grid along x, and along y if the case is two-dimensional, in the case's unit of length.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -12,10 +18,6 @@ pub struct Grid {
     /// The cells along y, across the chute; without it the case is one-dimensional.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub y: Option<Axis>,
-    /// What happens at the edges: one word for all, or { x = ..., y = ... } with a word or a pair [low, high] each (default
-    /// "open"); hadeler_kuttler has table.open instead.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub boundary: Option<Boundary>,
 }
 
 impl Grid {
@@ -23,6 +25,23 @@ impl Grid {
     #[must_use]
     pub fn cells(&self) -> [usize; 2] {
         [self.x.cells, self.y.as_ref().map_or(1, |y| y.cells)]
+    }
+
+    /// The axes, in their order.
+    pub fn axes(&self) -> impl Iterator<Item = &Axis> {
+        std::iter::once(&self.x).chain(&self.y)
+    }
+
+    /// Ends, widths and number of the cells.
+    pub(crate) fn check(&self, look: &Look) -> Result<(), CaseError> {
+        self.x.check(look, "grid.x")?;
+        self.y.as_ref().map_or(Ok(()), |y| y.check(look, "grid.y"))?;
+        let cells = self.cells();
+        if cells[0].checked_mul(cells[1]).is_none_or(|count| count as u64 > MAX_CELLS) {
+            let message = format!("{} x {} cells are more than any machine holds", cells[0], cells[1]);
+            return Err(look.source.fault("grid.x.cells", message));
+        }
+        Ok(())
     }
 
     /// The centres of the cells.
@@ -35,16 +54,6 @@ impl Grid {
     #[must_use]
     pub fn nodes(&self) -> Points {
         Points { x: self.x.faces(), y: self.y.as_ref().map(Axis::faces) }
-    }
-
-    /// What happens at the low and the high edge along x and along y.
-    #[must_use]
-    pub fn sides(&self) -> [[Side; 2]; 2] {
-        match &self.boundary {
-            None => [[Side::Open; 2]; 2],
-            Some(Boundary::Uniform(side)) => [[*side; 2]; 2],
-            Some(Boundary::Axes(axes)) => [axes.x.sides(), axes.y.sides()],
-        }
     }
 }
 
@@ -61,6 +70,29 @@ pub struct Axis {
 }
 
 impl Axis {
+    fn check(&self, look: &Look, key: &str) -> Result<(), CaseError> {
+        for (end, value) in [("from", self.from), ("to", self.to)] {
+            look.number(&format!("{key}.{end}"), value, |_| true, "a finite number")?;
+        }
+        let (from, to, cells) = (self.from, self.to, self.cells);
+        if from >= to {
+            return Err(look.fault(
+                &format!("{key}.from"),
+                format!("from = {from} is not below to = {to}"),
+                "from is the low end of the grid, to the high end",
+            ));
+        }
+        let cells_key = format!("{key}.cells");
+        if cells < 3 {
+            return Err(look.source.fault(&cells_key, format!("found {cells} cells, expected at least 3")));
+        }
+        let width = self.width();
+        if !(width > 0.0 && from + width > from && to - width < to) {
+            return Err(look.source.fault(&cells_key, "the cells are too small to be told apart"));
+        }
+        Ok(())
+    }
+
     /// Width of a cell, dx = (to - from)/cells.
     #[must_use]
     pub fn width(&self) -> f64 {
@@ -134,125 +166,8 @@ impl Points {
     }
 
     /// A place in words, as long as it has coordinates.
-    pub(super) fn words(&self, [x, y]: [f64; 2]) -> String {
+    pub(crate) fn words(&self, [x, y]: [f64; 2]) -> String {
         if self.y.is_some() { format!("x = {x}, y = {y}") } else { format!("x = {x}") }
-    }
-}
-
-/// What happens at an edge of the grid.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, JsonSchema)]
-#[serde(rename_all = "snake_case")]
-pub enum Side {
-    /// What arrives leaves: the ghost cell copies the edge cell.
-    #[default]
-    Open,
-    /// Nothing passes: the ghost cell mirrors the edge cell.
-    Wall,
-    /// What leaves here enters at the opposite edge.
-    Periodic,
-}
-
-/// The edges of the grid: all alike, or axis by axis.
-#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
-#[serde(untagged)]
-pub enum Boundary {
-    /// The same at every edge.
-    Uniform(Side),
-    /// Axis by axis.
-    Axes(AxisSides),
-}
-
-impl Default for Boundary {
-    fn default() -> Self {
-        Self::Uniform(Side::Open)
-    }
-}
-
-/// The edges along each axis; an axis that is not named is open.
-#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub struct AxisSides {
-    /// At the low and the high end of x.
-    #[serde(default)]
-    pub x: SidePair,
-    /// At the low and the high end of y.
-    #[serde(default)]
-    pub y: SidePair,
-}
-
-/// One word for both ends of an axis, or a pair [low, high].
-#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
-#[serde(untagged)]
-pub enum SidePair {
-    /// Both ends.
-    Both(Side),
-    /// The low and the high end.
-    Pair([Side; 2]),
-}
-
-impl Default for SidePair {
-    fn default() -> Self {
-        Self::Both(Side::Open)
-    }
-}
-
-impl SidePair {
-    fn sides(&self) -> [Side; 2] {
-        match self {
-            Self::Both(side) => [*side; 2],
-            Self::Pair(pair) => *pair,
-        }
-    }
-}
-
-/// Reads a side from a word, with serde's own message for a wrong one.
-fn word<E: serde::de::Error>(text: &str) -> Result<Side, E> {
-    Side::deserialize(serde::de::value::StrDeserializer::new(text))
-}
-
-impl<'de> Deserialize<'de> for SidePair {
-    fn deserialize<D: serde::Deserializer<'de>>(from: D) -> Result<Self, D::Error> {
-        struct Words;
-        impl<'de> serde::de::Visitor<'de> for Words {
-            type Value = SidePair;
-            fn expecting(&self, to: &mut std::fmt::Formatter) -> std::fmt::Result {
-                to.write_str("\"open\", \"wall\", \"periodic\" or a pair of them, [low, high]")
-            }
-            fn visit_str<E: serde::de::Error>(self, text: &str) -> Result<SidePair, E> {
-                word(text).map(SidePair::Both)
-            }
-            fn visit_seq<A: serde::de::SeqAccess<'de>>(self, mut list: A) -> Result<SidePair, A::Error> {
-                let mut found = Vec::new();
-                while let Some(side) = list.next_element()? {
-                    found.push(side);
-                }
-                let count = found.len();
-                found
-                    .try_into()
-                    .map(SidePair::Pair)
-                    .map_err(|_| serde::de::Error::invalid_length(count, &self))
-            }
-        }
-        from.deserialize_any(Words)
-    }
-}
-
-impl<'de> Deserialize<'de> for Boundary {
-    fn deserialize<D: serde::Deserializer<'de>>(from: D) -> Result<Self, D::Error> {
-        struct WordOrAxes;
-        impl<'de> serde::de::Visitor<'de> for WordOrAxes {
-            type Value = Boundary;
-            fn expecting(&self, to: &mut std::fmt::Formatter) -> std::fmt::Result {
-                to.write_str("\"open\", \"wall\", \"periodic\" or { x = ..., y = ... }")
-            }
-            fn visit_str<E: serde::de::Error>(self, text: &str) -> Result<Boundary, E> {
-                word(text).map(Boundary::Uniform)
-            }
-            fn visit_map<A: serde::de::MapAccess<'de>>(self, map: A) -> Result<Boundary, A::Error> {
-                AxisSides::deserialize(serde::de::value::MapAccessDeserializer::new(map)).map(Boundary::Axes)
-            }
-        }
-        from.deserialize_any(WordOrAxes)
     }
 }
 

@@ -1,6 +1,9 @@
 //! `[output]`: which files, how many instants, how many digits.
 
-use crate::Precision;
+use crate::checked::{Ends, Frames};
+use crate::fault::CaseError;
+use crate::look::Look;
+use crate::precision::Precision;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -21,6 +24,49 @@ pub struct Output {
     #[serde(skip_serializing_if = "Option::is_none")]
     pub precision: Option<Precision>,
 }
+
+/// Frames of a run whose end is known.
+const FRAMES: u32 = 20;
+
+impl Output {
+    /// When the state is written, which files, and how precise they are; `files` and `precision` are what is written where
+    /// the case does not say. Files that need a place on the earth are refused unless they are among `files`.
+    pub(crate) fn check(
+        &self,
+        look: &Look,
+        ends: &Ends,
+        files: &[FileKind],
+        precision: Precision,
+    ) -> Result<(Frames, Vec<FileKind>, Precision), CaseError> {
+        if self.every.is_some() && self.steps.is_some() {
+            let message = "both `every` and `steps` are given";
+            return Err(look.fault("output.steps", message, "keep one of them"));
+        }
+        look.positive("output.every", self.every)?;
+        look.not_zero("output.steps", self.steps)?;
+        for (index, kind) in self.files.iter().flatten().enumerate() {
+            if kind.needs_terrain() && !files.contains(kind) {
+                return Err(look.fault(
+                    &format!("output.files[{index}]"),
+                    format!("`{}` needs [terrain]", kind.as_str()),
+                    "on a grid: netcdf, csv, vtk, figures, animation",
+                ));
+            }
+        }
+        let frames = match (self.every, self.steps, ends.time, ends.steps) {
+            (Some(every), ..) => Frames::Every(every),
+            (None, Some(steps), ..) => Frames::Steps(steps),
+            (None, None, Some(end), _) => Frames::Every(end / f64::from(FRAMES)),
+            (None, None, None, Some(steps)) => Frames::Steps(steps.div_ceil(u64::from(FRAMES)).max(1)),
+            (None, None, None, None) => Frames::Ends,
+        };
+        let files = self.files.clone().unwrap_or_else(|| files.to_vec());
+        Ok((frames, files, self.precision.unwrap_or(precision)))
+    }
+}
+
+/// Files of a case on a grid that does not say which.
+pub(crate) const ON_A_GRID: &[FileKind] = &[FileKind::Netcdf, FileKind::Figures];
 
 /// A kind of output file.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
@@ -65,15 +111,4 @@ impl FileKind {
     pub fn needs_terrain(self) -> bool {
         matches!(self, Self::Geotiff | Self::Vector | Self::Report)
     }
-}
-
-/// When the state is written; the first and the last instant always are.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub enum Frames {
-    /// Every so much simulated time.
-    Every(f64),
-    /// Every so many steps.
-    Steps(u64),
-    /// At the start and at the end only, since the end is not known beforehand.
-    Ends,
 }

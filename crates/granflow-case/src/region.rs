@@ -2,14 +2,14 @@
 
 use std::path::{Path, PathBuf};
 
-use geo::{BoundingRect, Distance, Euclidean, Intersects, Point, Polygon};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::fault::PartFault;
+use super::files::Outline;
 use super::grid::Points;
-use super::initial::Centre;
-use granflow_geo::release;
+use super::look::Look;
+use super::quantity::Centre;
 
 /// A part of the plane (of the line in one dimension), with its rim.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -35,24 +35,24 @@ pub struct Disc {
 }
 
 /// A region whose file is read.
-#[derive(Debug, Clone, PartialEq)]
-pub(super) enum Area {
+#[derive(Debug)]
+pub(crate) enum Area {
     Box([f64; 2], [f64; 2]),
     Disc(Disc),
-    Polygons(Vec<Polygon>),
+    Polygons(Box<dyn Outline>),
 }
 
 impl Region {
     /// The file that the region needs.
-    pub(super) fn needs_file(&self) -> Option<&Path> {
+    pub(crate) fn needs_file(&self) -> Option<&Path> {
         match self {
             Self::File(path) => Some(path),
             Self::Box(_) | Self::Disc(_) => None,
         }
     }
 
-    /// Checks the numbers and reads the file, which is looked for in `folder`; `points` tells one dimension from two.
-    pub(super) fn area(&self, points: &Points, folder: &Path) -> Result<Area, PartFault> {
+    /// Checks the numbers and reads the file; `points` tells one dimension from two.
+    pub(crate) fn area(&self, points: &Points, look: &Look) -> Result<Area, PartFault> {
         let plane = points.y.is_some();
         match self {
             Self::Box(ends) => {
@@ -97,13 +97,8 @@ impl Region {
                 "polygons need two dimensions, expected box = [x0, x1]: the grid has no y",
             )),
             Self::File(path) => {
-                let polygons = release::outlines(&folder.join(path))
-                    .map_err(|error| PartFault::new("file", error.to_string()).file())?;
-                if polygons.is_empty() {
-                    let message = format!("{} holds no polygon", path.display());
-                    return Err(PartFault::new("file", message).file());
-                }
-                Ok(Area::Polygons(polygons))
+                let polygons = look.files.outlines(&look.locate(path));
+                polygons.map(Area::Polygons).map_err(|error| PartFault::new("file", error).file())
             }
         }
     }
@@ -113,17 +108,17 @@ impl Area {
     /// Whether the place lies in the region or, up to `slack`, on its rim.
     ///
     /// The slack is rounding's: it lets a box from 0.1 to 0.9 hold both or none of two mirrored places.
-    pub(super) fn holds(&self, [x, y]: [f64; 2], slack: f64) -> bool {
+    pub(crate) fn holds(&self, [x, y]: [f64; 2], slack: f64) -> bool {
         let between = |[low, high]: [f64; 2], at: f64| low - slack <= at && at <= high + slack;
         match self {
             Self::Box(xs, ys) => between(*xs, x) && between(*ys, y),
             Self::Disc(disc) => disc.centre.distance(x, y) <= disc.radius + slack,
-            Self::Polygons(polygons) => polygons.iter().any(|polygon| polygon.intersects(&Point::new(x, y))),
+            Self::Polygons(polygons) => polygons.holds([x, y]),
         }
     }
 
     /// Distance of a place from the region's rim, positive within.
-    pub(super) fn depth(&self, [x, y]: [f64; 2]) -> f64 {
+    pub(crate) fn depth(&self, [x, y]: [f64; 2]) -> f64 {
         match self {
             Self::Box(xs, ys) => {
                 let [across, along] = [(xs, x), (ys, y)].map(|([low, high], at)| (at - low).min(high - at));
@@ -131,21 +126,12 @@ impl Area {
                 if within >= 0.0 { within } else { -across.min(0.0).hypot(along.min(0.0)) }
             }
             Self::Disc(disc) => disc.radius - disc.centre.distance(x, y),
-            Self::Polygons(polygons) => {
-                let place = Point::new(x, y);
-                let depth = |polygon: &Polygon| {
-                    let rings = std::iter::once(polygon.exterior()).chain(polygon.interiors());
-                    let away =
-                        rings.map(|ring| Euclidean.distance(&place, ring)).fold(f64::INFINITY, f64::min);
-                    if polygon.intersects(&place) { away } else { -away }
-                };
-                polygons.iter().map(depth).fold(f64::NEG_INFINITY, f64::max)
-            }
+            Self::Polygons(polygons) => polygons.depth([x, y]),
         }
     }
 
     /// The ends [low, high] of the region along x and y.
-    pub(super) fn bounds(&self) -> [[f64; 2]; 2] {
+    pub(crate) fn bounds(&self) -> [[f64; 2]; 2] {
         match self {
             Self::Box(x, y) => [*x, *y],
             Self::Disc(disc) => {
@@ -155,23 +141,21 @@ impl Area {
                 };
                 [cx, cy].map(|at| [at - disc.radius, at + disc.radius])
             }
-            Self::Polygons(polygons) => {
-                let mut bounds = [[f64::INFINITY, f64::NEG_INFINITY]; 2];
-                for rect in polygons.iter().filter_map(BoundingRect::bounding_rect) {
-                    let ends = [[rect.min().x, rect.max().x], [rect.min().y, rect.max().y]];
-                    for (all, one) in bounds.iter_mut().zip(ends) {
-                        *all = [all[0].min(one[0]), all[1].max(one[1])];
-                    }
-                }
-                bounds
-            }
+            Self::Polygons(polygons) => polygons.bounds(),
         }
     }
 }
 
 #[cfg(test)]
 mod tests {
+    use super::super::files::NoFiles;
+    use super::super::source::Source;
     use super::*;
+
+    fn in_box(ends: &[f64]) -> Area {
+        let look = Look { source: &Source::default(), files: &NoFiles };
+        Region::Box(ends.to_vec()).area(&plane(), &look).unwrap()
+    }
 
     fn plane() -> Points {
         Points { x: vec![0.0], y: Some(vec![0.0]) }
@@ -179,25 +163,14 @@ mod tests {
 
     #[test]
     fn a_box_has_its_rim_and_may_be_without_breadth() {
-        let area = Region::Box(vec![0.0, 0.0, 0.25, 0.75]).area(&plane(), Path::new("")).unwrap();
+        let area = in_box(&[0.0, 0.0, 0.25, 0.75]);
         assert!(area.holds([0.0, 0.25], 0.0) && area.holds([0.0, 0.75], 0.0));
         assert!(!area.holds([0.0, 0.76], 1e-3) && !area.holds([0.01, 0.5], 1e-3));
         assert!(area.holds([1e-12, 0.5], 1e-9), "rounding does not push a place off an edge");
-        let strip = Region::Box(vec![0.0, 1.0]).area(&plane(), Path::new("")).unwrap();
+        let strip = in_box(&[0.0, 1.0]);
         assert!(strip.holds([0.5, 1e6], 0.0));
         assert_eq!([[0.25, 9.0], [-3.0, 0.0]].map(|place| strip.depth(place)), [0.25, -3.0]);
-        let square = Region::Box(vec![0.0, 1.0, 0.0, 1.0]).area(&plane(), Path::new("")).unwrap();
+        let square = in_box(&[0.0, 1.0, 0.0, 1.0]);
         assert_eq!([[0.5, 0.125], [4.0, 5.0]].map(|place| square.depth(place)), [0.125, -5.0]);
-    }
-
-    #[test]
-    fn a_polygon_has_its_hole_not() {
-        let folder = tempfile::tempdir().unwrap();
-        let ring = r#"{"type":"Polygon","coordinates":[[[0,0],[4,0],[4,4],[0,4],[0,0]],[[1,1],[1,3],[3,3],[3,1],[1,1]]]}"#;
-        std::fs::write(folder.path().join("ring.geojson"), ring).unwrap();
-        let area = Region::File("ring.geojson".into()).area(&plane(), folder.path()).unwrap();
-        assert!(area.holds([0.5, 2.0], 0.0) && !area.holds([2.0, 2.0], 0.0) && !area.holds([5.0, 2.0], 0.0));
-        assert_eq!(area.bounds(), [[0.0, 4.0]; 2]);
-        assert_eq!([[0.5, 2.0], [2.0, 2.0], [7.0, 8.0]].map(|place| area.depth(place)), [0.5, -1.0, -5.0]);
     }
 }

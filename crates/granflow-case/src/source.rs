@@ -2,6 +2,7 @@
 
 use std::collections::BTreeMap;
 use std::ops::Range;
+use std::path::{Path, PathBuf};
 
 use toml::Spanned;
 use toml::de::{DeArray, DeTable, DeValue};
@@ -48,7 +49,7 @@ impl Source {
     ///
     /// # Errors
     /// A [`CaseError`] where a text is not TOML, or an override names no key.
-    pub(super) fn read(name: &str, text: &str, overrides: &[String]) -> Result<Self, CaseError> {
+    pub(crate) fn read(name: &str, text: &str, overrides: &[String]) -> Result<Self, CaseError> {
         let mut source = Self::default();
         source.add(name.to_owned(), text.to_owned(), Vec::new());
         for argument in overrides {
@@ -63,7 +64,7 @@ impl Source {
     }
 
     /// The document with all overrides, each key with its place in the common numbering.
-    pub(super) fn document(&self) -> Result<Spanned<DeTable<'_>>, CaseError> {
+    pub(crate) fn document(&self) -> Result<Spanned<DeTable<'_>>, CaseError> {
         let mut pieces = self.pieces.iter();
         let Some(file) = pieces.next() else { return Ok(Spanned::new(0..0, DeTable::new())) };
         let mut root = file.parse()?;
@@ -84,7 +85,7 @@ impl Source {
     }
 
     /// Whether the case says anything under this key.
-    pub(super) fn has(&self, key: &str) -> bool {
+    pub(crate) fn has(&self, key: &str) -> bool {
         self.places.contains_key(key)
     }
 
@@ -99,6 +100,33 @@ impl Source {
         all
     }
 
+    /// The case as one TOML document: the text of the file, or its tables with the overrides laid in.
+    #[must_use]
+    pub fn resolved(&self) -> String {
+        let [file] = self.pieces.as_slice() else {
+            let document = self.document().ok();
+            let table = document.map(|document| resolve_table(document.into_inner())).unwrap_or_default();
+            return table.to_string();
+        };
+        file.text.clone()
+    }
+
+    /// The word that stands under a key, if one does.
+    pub(crate) fn word(&self, key: &str) -> Option<String> {
+        let mut document = self.document().ok()?.into_inner();
+        let (tables, last) = key.rsplit_once('.').map_or((None, key), |(tables, last)| (Some(tables), last));
+        for step in tables.iter().flat_map(|tables| tables.split('.')) {
+            let DeValue::Table(inner) = document.remove(step)?.into_inner() else { return None };
+            document = inner;
+        }
+        document.get(last)?.get_ref().as_str().map(str::to_owned)
+    }
+
+    /// The folder of the case file.
+    pub(crate) fn folder(&self) -> PathBuf {
+        Path::new(self.name()).parent().map(Path::to_path_buf).unwrap_or_default()
+    }
+
     /// Name of the case file.
     #[must_use]
     pub fn name(&self) -> &str {
@@ -106,12 +134,12 @@ impl Source {
     }
 
     /// An error at the value of `key`, or at the nearest table around it that the case writes.
-    pub(super) fn fault(&self, key: &str, message: impl Into<String>) -> CaseError {
+    pub(crate) fn fault(&self, key: &str, message: impl Into<String>) -> CaseError {
         self.fault_in(key, None, message)
     }
 
     /// An error at a part of the text that `key` holds, given as bytes of the string's content.
-    pub(super) fn fault_in(
+    pub(crate) fn fault_in(
         &self,
         key: &str,
         part: Option<Range<usize>>,
@@ -168,7 +196,7 @@ impl Source {
     }
 
     /// Puts what serde and toml say into a user's words, with the key and the nearest right spelling.
-    pub(super) fn explain(&self, error: &toml::de::Error) -> CaseError {
+    pub(crate) fn explain(&self, error: &toml::de::Error, missing: &[Missing]) -> CaseError {
         let message = error.message();
         let span = error.span().filter(|span| *span != (0..0));
         let key = span.as_ref().map_or("", |span| self.key_at(span));
@@ -185,8 +213,17 @@ impl Source {
             }
             [field] if message.starts_with("missing field") => {
                 let full = if key.is_empty() { (*field).to_owned() } else { format!("{key}.{field}") };
-                self.at(span.clone(), &full, format!("the key `{field}` is missing"))
-                    .help(cure_missing(field, key))
+                let plain = format!("the key `{field}` is missing");
+                match missing.iter().find(|one| one.key == full) {
+                    Some(Missing { message: Some(message), cure, .. }) => {
+                        self.fault(&full, *message).help(*cure)
+                    }
+                    Some(Missing { cure, .. }) => self.at(span.clone(), &full, plain).help(*cure),
+                    None => {
+                        let table = if key.is_empty() { "the case" } else { key };
+                        self.at(span.clone(), &full, plain).help(format!("add {field} = ... to {table}"))
+                    }
+                }
             }
             _ if message.starts_with("wanted exactly 1 element") => plain(
                 "exactly one choice is wanted here".into(),
@@ -197,13 +234,12 @@ impl Source {
     }
 }
 
-fn cure_missing(field: &str, table: &str) -> String {
-    match (table, field) {
-        ("", "time") => "add a table [time] with steps, end, until = \"rest\" (hadeler_kuttler: \"steady\") or stop.kinetic_energy".to_owned(),
-        (_, "friction") => "say a law, for instance friction.coulomb = { angle = \"25 deg\" }; none is friction.coulomb = { mu = 0.0 }".to_owned(),
-        ("", _) => format!("add {field} = ... to the case"),
-        _ => format!("add {field} = ... to {table}"),
-    }
+/// What is said where a key is missing: `message`, else that it is missing, and the cure.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Missing {
+    pub key: &'static str,
+    pub message: Option<&'static str>,
+    pub cure: &'static str,
 }
 
 /// serde's names of types in plain words.
@@ -344,4 +380,28 @@ fn shift_value(value: Spanned<DeValue>, by: usize) -> Spanned<DeValue> {
         other => other,
     };
     Spanned::new(span, inner)
+}
+
+/// A table without the places of its keys.
+fn resolve_table(table: DeTable) -> toml::Table {
+    let entries = table.into_iter();
+    entries.map(|(key, value)| (key.into_inner().into_owned(), resolve(value.into_inner()))).collect()
+}
+
+fn resolve(value: DeValue) -> toml::Value {
+    match value {
+        DeValue::Table(table) => toml::Value::Table(resolve_table(table)),
+        DeValue::Array(list) => {
+            toml::Value::Array(list.into_iter().map(|item| resolve(item.into_inner())).collect())
+        }
+        DeValue::String(text) => toml::Value::String(text.into_owned()),
+        DeValue::Boolean(yes) => toml::Value::Boolean(yes),
+        DeValue::Datetime(instant) => toml::Value::Datetime(instant),
+        DeValue::Float(number) => toml::Value::Float(number.as_str().parse().unwrap_or(f64::NAN)),
+        DeValue::Integer(number) => match i64::from_str_radix(number.as_str(), number.radix()) {
+            Ok(whole) => toml::Value::Integer(whole),
+            // larger than any count: read as a number with a point
+            Err(_) => toml::Value::Float(number.as_str().parse().unwrap_or(f64::NAN)),
+        },
+    }
 }

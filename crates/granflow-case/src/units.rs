@@ -19,22 +19,10 @@ impl Angle {
         Self(radians)
     }
 
-    /// An angle of that many degrees.
-    #[must_use]
-    pub fn from_degrees(degrees: f64) -> Self {
-        Self(degrees.to_radians())
-    }
-
     /// The angle in radians.
     #[must_use]
     pub const fn radians(self) -> f64 {
         self.0
-    }
-
-    /// The angle in degrees.
-    #[must_use]
-    pub fn degrees(self) -> f64 {
-        self.0.to_degrees()
     }
 }
 
@@ -53,6 +41,9 @@ fn measured(text: &str, what: &str, units: &[(&str, f64)], examples: &str) -> Re
     let value = Formula::parse(number, &[]).map_err(|error| not(format!(" ({error})")))?.at(&[]);
     Ok(value * factor)
 }
+
+/// What to do about an angle that is too large.
+pub(crate) const RADIANS: &str = "a plain number is in radians: write \"18 deg\" for degrees";
 
 const ANGLE: &str = "\"18 deg\", \"0.3 rad\" or a number in radians";
 const LENGTH: &str = "\"20 m\" or a number";

@@ -1,16 +1,21 @@
 //! The inclination zeta(x) of a chute and its curvature kappa = -d zeta/dx.
 
+use std::f64::consts::FRAC_PI_2;
+
 use schemars::JsonSchema;
 use serde::{Deserialize, Deserializer, Serialize};
 
-use super::choice::{Plain, plain_or_table};
-use super::formula::Formula;
-use super::units::Angle;
+use crate::choice::{Plain, plain_or_table};
+use crate::fault::{CaseError, PartFault};
+use crate::formula::Formula;
+use crate::grid::Axis;
+use crate::look::Look;
+use crate::units::{Angle, RADIANS};
 
 /// The inclination of the chute, positive downhill along +x.
 #[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
 #[serde(untagged)]
-pub enum Slope {
+pub(crate) enum Slope {
     /// The same everywhere.
     Constant(Angle),
     /// A profile over x.
@@ -26,7 +31,7 @@ impl Default for Slope {
 /// A slope that varies along x: points (`x` and `angle`, straight between them, constant beyond) or a `formula` in x.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
-pub struct Profile {
+pub(crate) struct Profile {
     /// Places of the points, growing.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub x: Option<Vec<f64>>,
@@ -53,45 +58,89 @@ impl<'de> Deserialize<'de> for Slope {
 }
 
 /// A slope that can be evaluated: zeta at a point, kappa as the mean over a cell.
-#[derive(Debug, Clone)]
-pub struct Chute {
+#[derive(Debug)]
+struct Curve {
     zeta: Zeta,
     kappa: Option<Formula>,
 }
 
-#[derive(Debug, Clone)]
+#[derive(Debug)]
 enum Zeta {
     Constant(f64),
     Points(Vec<(f64, f64)>),
     Formula(Formula),
 }
 
-/// What is wrong with a profile: the key below `material.slope` (with the bytes of a formula) and the message.
-pub(super) struct ProfileFault {
-    pub key: &'static str,
-    pub part: Option<std::ops::Range<usize>>,
-    pub message: String,
+/// Slope and curvature of every column of cells.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct Columns {
+    /// Inclination at the centre in radians.
+    pub zeta: Vec<f64>,
+    /// Mean curvature.
+    pub kappa: Vec<f64>,
 }
 
-impl Chute {
+impl Slope {
+    /// Evaluates the slope on the cells along x.
+    pub fn check(&self, look: &Look, axis: &Axis) -> Result<Columns, CaseError> {
+        let key = "material.slope";
+        let fits = |v: f64| v.abs() < FRAC_PI_2;
+        let steep = |key: &str, angle: &Angle| {
+            let allowed = "an angle between -90 deg and 90 deg (1.5708 rad)";
+            look.number(key, angle.radians(), fits, allowed).map_err(|error| error.help(RADIANS))
+        };
+        match self {
+            Self::Constant(angle) => steep(key, angle)?,
+            Self::Profile(profile) => {
+                for (index, angle) in profile.angle.iter().flatten().enumerate() {
+                    steep(&format!("{key}.angle[{index}]"), angle)?;
+                }
+                for (index, x) in profile.x.iter().flatten().enumerate() {
+                    look.number(&format!("{key}.x[{index}]"), *x, |_| true, "a finite number")?;
+                }
+            }
+        }
+        let curve = Curve::new(self).map_err(|fault| look.part_fault(key, fault))?;
+        let mut columns = Columns { zeta: Vec::new(), kappa: Vec::new() };
+        for cell in 0..axis.cells {
+            let x = axis.centre(cell);
+            let (zeta, kappa) = (curve.zeta(x), curve.kappa(axis.face(cell), axis.face(cell + 1)));
+            if !fits(zeta) || !kappa.is_finite() {
+                let message = format!("at x = {x} the slope is {zeta} rad and its curvature {kappa}");
+                let cure = "expected an angle between -90 deg and 90 deg and a finite curvature";
+                return Err(look.fault(key, message, cure));
+            }
+            columns.zeta.push(zeta);
+            columns.kappa.push(kappa);
+        }
+        Ok(columns)
+    }
+}
+
+impl Curve {
     /// Prepares a slope for evaluation.
-    pub(super) fn new(slope: &Slope) -> Result<Self, ProfileFault> {
+    fn new(slope: &Slope) -> Result<Self, PartFault> {
         let profile = match slope {
             Slope::Constant(angle) => return Ok(Self { zeta: Zeta::Constant(angle.radians()), kappa: None }),
             Slope::Profile(profile) => profile,
         };
-        let fault = |key, message: String| ProfileFault { key, part: None, message };
         let zeta = match (&profile.x, &profile.angle, &profile.formula) {
             (None, None, Some(formula)) => Zeta::Formula(read("formula", formula)?),
             (Some(x), Some(angle), None) => {
                 if x.len() != angle.len() {
-                    return Err(fault("angle", format!("{} angles for {} places x", angle.len(), x.len())));
+                    return Err(PartFault::new(
+                        "angle",
+                        format!("{} angles for {} places x", angle.len(), x.len()),
+                    ));
                 }
                 if x.len() < 2 {
-                    return Err(fault("x", format!("{} point(s), a profile needs at least 2", x.len())));
+                    return Err(PartFault::new(
+                        "x",
+                        format!("{} point(s), a profile needs at least 2", x.len()),
+                    ));
                 }
                 if let Some(pair) = x.windows(2).find(|pair| pair[0] >= pair[1]) {
-                    return Err(fault(
+                    return Err(PartFault::new(
                         "x",
                         format!("{} comes after {}; the places must grow", pair[1], pair[0]),
                     ));
@@ -99,9 +148,9 @@ impl Chute {
                 Zeta::Points(x.iter().zip(angle).map(|(x, angle)| (*x, angle.radians())).collect())
             }
             _ => {
-                return Err(fault(
+                return Err(PartFault::new(
                     "",
-                    "a profile is { x = [...], angle = [...] } or { formula = \"...\" }".to_owned(),
+                    "a profile is { x = [...], angle = [...] } or { formula = \"...\" }",
                 ));
             }
         };
@@ -110,8 +159,7 @@ impl Chute {
     }
 
     /// Inclination at x in radians.
-    #[must_use]
-    pub fn zeta(&self, x: f64) -> f64 {
+    fn zeta(&self, x: f64) -> f64 {
         match &self.zeta {
             Zeta::Constant(angle) => *angle,
             Zeta::Formula(formula) => formula.at(&[x]),
@@ -128,28 +176,17 @@ impl Chute {
 
     /// Curvature of the cell [low, high]: -(zeta(high) - zeta(low))/(high - low), the exact mean of -d zeta/dx over
     /// it, or the case's own formula at the centre.
-    #[must_use]
-    pub fn kappa(&self, low: f64, high: f64) -> f64 {
+    fn kappa(&self, low: f64, high: f64) -> f64 {
         match (&self.kappa, &self.zeta) {
             (Some(formula), _) => formula.at(&[0.5 * (low + high)]),
             (None, Zeta::Constant(_)) => 0.0,
             (None, _) => -(self.zeta(high) - self.zeta(low)) / (high - low),
         }
     }
-
-    /// Whether the slope is the same everywhere.
-    #[must_use]
-    pub fn is_constant(&self) -> bool {
-        matches!(self.zeta, Zeta::Constant(_))
-    }
 }
 
-fn read(key: &'static str, text: &str) -> Result<Formula, ProfileFault> {
-    Formula::parse(text, &["x"]).map_err(|error| ProfileFault {
-        key,
-        part: Some(error.at..error.at + error.length),
-        message: error.to_string(),
-    })
+fn read(key: &'static str, text: &str) -> Result<Formula, PartFault> {
+    Formula::parse(text, &["x"]).map_err(|error| PartFault::formula(key, error))
 }
 
 #[cfg(test)]
@@ -163,21 +200,21 @@ mod tests {
             angle: Some([0.6, 0.2, 0.2].map(Angle::from_radians).to_vec()),
             ..Profile::default()
         };
-        let chute = Chute::new(&Slope::Profile(profile)).ok().unwrap();
-        assert_eq!([-1.0, 0.0, 2.0, 3.0, 9.0].map(|x| chute.zeta(x)), [0.6, 0.6, 0.2, 0.2, 0.2]);
-        assert!((chute.zeta(1.0) - 0.4).abs() < 1e-15);
-        assert!((chute.kappa(0.5, 1.5) - 0.2).abs() < 1e-15, "a chute that flattens has kappa > 0");
-        assert!((chute.kappa(1.0, 3.0) - 0.1).abs() < 1e-15, "the mean over a cell with a kink");
+        let curve = Curve::new(&Slope::Profile(profile)).ok().unwrap();
+        assert_eq!([-1.0, 0.0, 2.0, 3.0, 9.0].map(|x| curve.zeta(x)), [0.6, 0.6, 0.2, 0.2, 0.2]);
+        assert!((curve.zeta(1.0) - 0.4).abs() < 1e-15);
+        assert!((curve.kappa(0.5, 1.5) - 0.2).abs() < 1e-15, "a chute that flattens has kappa > 0");
+        assert!((curve.kappa(1.0, 3.0) - 0.1).abs() < 1e-15, "the mean over a cell with a kink");
     }
 
     #[test]
     fn a_formula() {
         let profile = Profile { formula: Some("0.5*exp(-x^2)".into()), ..Profile::default() };
-        let chute = Chute::new(&Slope::Profile(profile.clone())).ok().unwrap();
-        assert_eq!(chute.zeta(0.0), 0.5);
-        assert!((chute.kappa(0.999, 1.001) - (-1f64).exp()).abs() < 1e-6);
+        let curve = Curve::new(&Slope::Profile(profile.clone())).ok().unwrap();
+        assert_eq!(curve.zeta(0.0), 0.5);
+        assert!((curve.kappa(0.999, 1.001) - (-1f64).exp()).abs() < 1e-6);
         let wrong = Profile { curvature: Some("2*z".into()), ..profile };
-        let fault = Chute::new(&Slope::Profile(wrong)).err().unwrap();
+        let fault = Curve::new(&Slope::Profile(wrong)).err().unwrap();
         assert_eq!((fault.key, fault.part), ("curvature", Some(2..3)));
     }
 }

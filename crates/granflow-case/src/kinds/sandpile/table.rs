@@ -5,16 +5,17 @@ use std::fmt;
 use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
 use serde::{Deserialize, Deserializer, Serialize};
 
-use super::initial::Quantity;
-use super::region::Region;
+use crate::quantity::Quantity;
+use crate::region::Region;
 use granflow_model::hadeler_kuttler::table as library;
 use granflow_model::scheme::Side;
 
-/// The table of the model hadeler_kuttler: the whole grid, unless `mask` and `cut` say otherwise; a cell belongs to it if
+/// The table: the whole grid, unless `mask` and `cut` say otherwise; a cell belongs to it if
 /// its centre does.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
-pub struct Table {
+#[schemars(rename = "Table")]
+pub(super) struct Words {
     /// Edges over which the sand falls: "all" (the default, holes too), or a list of left, right, bottom, top, hole; the
     /// other edges are walls.
     #[serde(default, deserialize_with = "open", skip_serializing_if = "Option::is_none")]
@@ -79,7 +80,7 @@ impl Edge {
 /// A wall along the edges of the table whose midpoints lie in a region.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
-pub struct Wall {
+pub(super) struct Wall {
     /// The region.
     pub on: Region,
 }

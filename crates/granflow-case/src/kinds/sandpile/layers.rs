@@ -1,31 +1,31 @@
 //! What lies on the table at the start, and how steep it may be.
 
-use super::TablePlan;
-use crate::Case;
+use super::{TablePlan, TableWords, Words};
 use crate::fault::CaseError;
-use crate::table::Table;
+use crate::look::Look;
 
 /// Slopes up to 1 + this are 1: rounding.
 const ROUNDING: f64 = 1e-9;
 
-impl Case {
+impl Words {
     /// Evaluates the height of the table and the two layers.
     pub(super) fn lay<const D: usize>(
         &self,
-        table: &Table,
+        look: &Look,
+        table: &TableWords,
         plan: &mut TablePlan<D>,
     ) -> Result<(), CaseError> {
         if table.height.is_some() {
-            plan.height = self.evaluate(&plan.nodes, "table.height", table.height.as_ref())?;
+            plan.height = look.evaluate(&plan.nodes, "table.height", table.height.as_ref())?;
         }
         if let Some((slope, place)) = plan.steepest(&plan.height) {
             let message = format!("the table's slope is {slope} between {place}");
             let cure = "1 is the angle of repose: no slope of the table is above 1";
-            return Err(self.fault("table.height", message, cure));
+            return Err(look.fault("table.height", message, cure));
         }
         let initial = self.initial.clone().unwrap_or_default();
         let key = "initial.standing_layer";
-        plan.standing = self.layer(&plan.nodes, key, initial.standing_layer.as_ref())?;
+        plan.standing = look.layer(&plan.nodes, key, initial.standing_layer.as_ref())?;
         for (node, u) in plan.standing.iter_mut().enumerate() {
             if plan.table.pinned(node) {
                 plan.clipped = plan.clipped.max(*u);
@@ -39,10 +39,10 @@ impl Case {
             let message = format!("the slope of the pile is {slope} between {place}");
             let cure = "a pile never stands steeper than 1, the angle of repose, and at an open edge it is 0; \
                         lower it: min(..., the distance to the open edge)";
-            return Err(self.fault(key, message, cure));
+            return Err(look.fault(key, message, cure));
         }
         let mut rolling =
-            self.layer(&plan.centres, "initial.rolling_layer", initial.rolling_layer.as_ref())?;
+            look.layer(&plan.centres, "initial.rolling_layer", initial.rolling_layer.as_ref())?;
         for (cell, v) in rolling.iter_mut().enumerate() {
             if !plan.inside(cell) {
                 *v = 0.0;

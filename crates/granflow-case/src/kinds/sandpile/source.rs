@@ -3,17 +3,18 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Deserializer, Serialize};
 
-use super::Case;
-use super::choice::{Plain, plain_or_table};
-use super::fault::{CaseError, PartFault};
-use super::formula::Formula;
 use super::plan::TablePlan;
-use super::region::Region;
+use crate::choice::{Plain, plain_or_table};
+use crate::fault::{CaseError, PartFault};
+use crate::formula::Formula;
+use crate::look::Look;
+use crate::region::Region;
 
-/// A source of the model hadeler_kuttler; several add up.
+/// A source of sand; several add up.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
-pub struct SandSource {
+#[schemars(rename = "Source")]
+pub(super) struct Words {
     /// Rate f, thickness per time, not negative.
     pub rate: Rate,
     /// Where it pours: the cells whose centres lie in the region (default: the whole table).
@@ -30,7 +31,7 @@ pub struct SandSource {
 /// The rate of a source: a number, or a formula in x, y and the time t.
 #[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
 #[serde(untagged)]
-pub enum Rate {
+pub(super) enum Rate {
     /// The same everywhere and always.
     Constant(f64),
     /// It varies.
@@ -40,7 +41,7 @@ pub enum Rate {
 /// A rate that varies in place or time.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
-pub enum Varying {
+pub(super) enum Varying {
     /// A formula in x, y and t; where it falls below 0, or is no number, after its beginning it counts as 0.
     Formula(String),
 }
@@ -58,7 +59,7 @@ impl<'de> Deserialize<'de> for Rate {
     }
 }
 
-impl SandSource {
+impl Words {
     /// When it pours: from <= t < to.
     pub(super) fn span(&self) -> [f64; 2] {
         [self.from.unwrap_or(0.0), self.to.unwrap_or(f64::INFINITY)]
@@ -155,35 +156,41 @@ impl Sources {
     }
 }
 
-impl Case {
-    /// The sources of a case of the model hadeler_kuttler, on the cells of its table.
-    ///
-    /// # Errors
-    /// [`CaseError`] for a formula or a region that cannot be evaluated.
-    pub fn sources<const D: usize>(&self, plan: &TablePlan<D>) -> Result<Sources, CaseError> {
-        let points = &plan.centres;
-        let mut parts = Vec::new();
-        for (index, source) in self.sources.iter().enumerate() {
-            let fault =
-                |name: &str, fault: PartFault| self.part_fault(&format!("source[{index}].{name}"), fault);
-            let rate = match &source.rate {
-                Rate::Constant(rate) => Law::Constant(*rate),
-                Rate::Varying(Varying::Formula(text)) => Formula::parse(text, &["x", "y", "t"])
-                    .map(Law::Formula)
-                    .map_err(|error| fault("rate", PartFault::formula("formula", error)))?,
-            };
-            let area = source.on.as_ref().map(|on| on.area(points, &self.folder())).transpose();
-            let area = area.map_err(|part| fault("on", part))?;
-            let on = |place| area.as_ref().is_none_or(|area| area.holds(place, plan.slack));
-            let meant: Vec<_> = points.iter().enumerate().filter(|(_, place)| on(*place)).collect();
-            let cells: Vec<_> = meant.iter().copied().filter(|(cell, _)| plan.inside(*cell)).collect();
-            let lost = match &area {
-                Some(_) if !meant.is_empty() => 1.0 - cells.len() as f64 / meant.len() as f64,
-                _ => 0.0,
-            };
-            let beyond = area.is_some_and(|area| plan.reaches_beyond(area.bounds()));
-            parts.push(Part { span: source.span(), cells, rate, lost, beyond });
-        }
-        Ok(Sources { cells: plan.rolling.len(), parts })
-    }
+/// Evaluates the sources on the cells of the table.
+pub(super) fn sources<const D: usize>(
+    look: &Look,
+    written: &[Words],
+    plan: &TablePlan<D>,
+) -> Result<Sources, CaseError> {
+    let parts = written.iter().enumerate();
+    let parts = parts.map(|(index, source)| part(look, &format!("source[{index}]"), source, plan));
+    Ok(Sources { cells: plan.rolling.len(), parts: parts.collect::<Result<_, _>>()? })
+}
+
+/// One source, which stands at `key`.
+fn part<const D: usize>(
+    look: &Look,
+    key: &str,
+    source: &Words,
+    plan: &TablePlan<D>,
+) -> Result<Part, CaseError> {
+    let fault = |name: &str, fault: PartFault| look.part_fault(&format!("{key}.{name}"), fault);
+    let points = &plan.centres;
+    let rate = match &source.rate {
+        Rate::Constant(rate) => Law::Constant(*rate),
+        Rate::Varying(Varying::Formula(text)) => Formula::parse(text, &["x", "y", "t"])
+            .map(Law::Formula)
+            .map_err(|error| fault("rate", PartFault::formula("formula", error)))?,
+    };
+    let area = source.on.as_ref().map(|on| on.area(points, look)).transpose();
+    let area = area.map_err(|part| fault("on", part))?;
+    let on = |place| area.as_ref().is_none_or(|area| area.holds(place, plan.slack));
+    let meant: Vec<_> = points.iter().enumerate().filter(|(_, place)| on(*place)).collect();
+    let cells: Vec<_> = meant.iter().copied().filter(|(cell, _)| plan.inside(*cell)).collect();
+    let lost = match &area {
+        Some(_) if !meant.is_empty() => 1.0 - cells.len() as f64 / meant.len() as f64,
+        _ => 0.0,
+    };
+    let beyond = area.is_some_and(|area| plan.reaches_beyond(area.bounds()));
+    Ok(Part { span: source.span(), cells, rate, lost, beyond })
 }

@@ -1,50 +1,16 @@
-//! `[initial]`: the state at the start, on a grid, and the shapes a quantity may have.
+//! A quantity over a grid: a number, a shape, a formula or a file.
 
 use std::path::{Path, PathBuf};
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Deserializer, Serialize};
 
-use super::array::read_array;
+use super::array;
 use super::choice::{Plain, plain_or_table};
 use super::fault::PartFault;
 use super::formula::Formula;
 use super::grid::Points;
-
-/// The state at time 0: thickness and velocity at the centres of the cells for savage_hutter, the two layers for
-/// hadeler_kuttler.
-#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub struct Initial {
-    /// Thickness h, not negative; savage_hutter needs it.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub thickness: Option<Quantity>,
-    /// Velocity along x (default 0).
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub velocity_x: Option<Quantity>,
-    /// Velocity along y (default 0).
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub velocity_y: Option<Quantity>,
-    /// Standing layer u at the corners of the cells, not negative; hadeler_kuttler (default 0).
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub standing_layer: Option<Quantity>,
-    /// Rolling layer v at the centres of the cells, not negative; hadeler_kuttler (default 0).
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub rolling_layer: Option<Quantity>,
-}
-
-impl Initial {
-    /// Every quantity with its key.
-    pub(super) fn quantities(&self) -> [(&'static str, Option<&Quantity>); 5] {
-        [
-            ("thickness", self.thickness.as_ref()),
-            ("velocity_x", self.velocity_x.as_ref()),
-            ("velocity_y", self.velocity_y.as_ref()),
-            ("standing_layer", self.standing_layer.as_ref()),
-            ("rolling_layer", self.rolling_layer.as_ref()),
-        ]
-    }
-}
+use super::look::Look;
 
 /// A quantity over the grid: a number, or one of the shapes.
 #[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
@@ -145,7 +111,7 @@ impl Default for Centre {
 
 impl Centre {
     /// Distance of (x, y) from the centre.
-    pub(super) fn distance(self, x: f64, y: f64) -> f64 {
+    pub(crate) fn distance(self, x: f64, y: f64) -> f64 {
         match self {
             // in one dimension y is 0 and the root of a square is exact
             Self::X(cx) => (x - cx).hypot(y),
@@ -169,7 +135,7 @@ impl<'de> Deserialize<'de> for Quantity {
 
 impl Quantity {
     /// What can be said about the numbers without evaluating anything.
-    pub(super) fn verify(&self) -> Result<(), PartFault> {
+    pub(crate) fn verify(&self) -> Result<(), PartFault> {
         let positive = |key, value: f64| {
             if value > 0.0 {
                 Ok(())
@@ -200,8 +166,8 @@ impl Quantity {
         }
     }
 
-    /// The values at all points; a file is looked for in `folder`.
-    pub(super) fn on(&self, points: &Points, folder: &Path) -> Result<Vec<f64>, PartFault> {
+    /// The values at all points.
+    pub(crate) fn on(&self, points: &Points, look: &Look) -> Result<Vec<f64>, PartFault> {
         self.verify()?;
         let fill =
             |value: &dyn Fn(f64, f64) -> f64| points.iter().map(|[x, y]| value(x, y)).collect::<Vec<f64>>();
@@ -223,13 +189,16 @@ impl Quantity {
                 let formula = compile(text)?;
                 fill(&|x, y| formula.at(&[x, y]))
             }
-            Self::Shape(Shape::File(path)) => read_array(&folder.join(path), points.counts())
-                .map_err(|message| PartFault::new("file", message).file())?,
+            Self::Shape(Shape::File(path)) => {
+                let path = look.source.folder().join(path);
+                array::read(look.files, &path, points.counts())
+                    .map_err(|message| PartFault::new("file", message).file())?
+            }
         })
     }
 
     /// Whether evaluating needs a file.
-    pub(super) fn needs_file(&self) -> Option<&Path> {
+    pub(crate) fn needs_file(&self) -> Option<&Path> {
         match self {
             Self::Shape(Shape::File(path)) => Some(path),
             _ => None,

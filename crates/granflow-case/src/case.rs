@@ -1,0 +1,87 @@
+//! A case file that was read: the words of its kind, and where each of them stands.
+
+use std::path::Path;
+use std::sync::Arc;
+
+use super::checked::Checked;
+use super::fault::CaseError;
+use super::files::{Files, read_case};
+use super::kinds::{self, Words};
+use super::look::Look;
+use super::source::Source;
+
+/// A case as it is written: every key is known and has a value of its type.
+#[derive(Debug, Clone)]
+pub struct Case {
+    source: Source,
+    words: Arc<dyn Words>,
+}
+
+impl Case {
+    /// Reads a case from a text; `name` is what errors call it, and files are looked for beside it.
+    ///
+    /// # Errors
+    /// [`CaseError`] at the first place that is not TOML, an unknown key, a wrong type or a missing key.
+    pub fn parse(text: &str, name: &str) -> Result<Self, CaseError> {
+        Self::parse_with(text, name, &[])
+    }
+
+    /// Reads a case from a text with overrides `key.path=value` laid over it.
+    ///
+    /// # Errors
+    /// As [`Case::parse`]; an error in an override names it.
+    pub fn parse_with(text: &str, name: &str, overrides: &[String]) -> Result<Self, CaseError> {
+        let source = Source::read(name, text, overrides)?;
+        let words = kinds::read(&source)?;
+        Ok(Self { source, words })
+    }
+
+    /// Reads a case file.
+    ///
+    /// # Errors
+    /// As [`Case::parse`]; a file that cannot be read is answered with the nearest name that exists.
+    pub fn read(path: &Path) -> Result<Self, CaseError> {
+        Self::read_with(path, &[])
+    }
+
+    /// Reads a case file with overrides `key.path=value` laid over it.
+    ///
+    /// # Errors
+    /// As [`Case::read`]; an error in an override names it.
+    pub fn read_with(path: &Path, overrides: &[String]) -> Result<Self, CaseError> {
+        Self::parse_with(&read_case(path)?, &path.display().to_string(), overrides)
+    }
+
+    /// Checks ranges, combinations, formulas and files, and evaluates the case: all that can be said before work starts.
+    ///
+    /// # Errors
+    /// [`CaseError`] for the first thing that is wrong; its kind is `File` where a file cannot be read.
+    pub fn check(&self, files: &dyn Files) -> Result<Checked, CaseError> {
+        self.words.check(&Look { source: &self.source, files })
+    }
+
+    /// The text of the case file, with the overrides as comment lines at the end.
+    #[must_use]
+    pub fn text(&self) -> String {
+        self.source.text()
+    }
+
+    /// The case as one TOML document that computes the same: the file's own text where there are no overrides, else its
+    /// tables with the overrides laid in.
+    #[must_use]
+    pub fn resolved(&self) -> String {
+        self.source.resolved()
+    }
+
+    /// The case with its defaults, as TOML; angles are in radians.
+    #[must_use]
+    pub fn to_toml(&self) -> String {
+        self.words.to_toml()
+    }
+
+    /// The name of the file the case was read from.
+    #[must_use]
+    pub fn source_name(&self) -> &str {
+        self.source.name()
+    }
+}

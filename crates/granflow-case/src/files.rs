@@ -1,0 +1,114 @@
+//! The files that a case names, and what reads them.
+
+use std::fmt::Debug;
+use std::io;
+use std::path::Path;
+
+use super::fault::{CaseError, nearest};
+
+/// What reads the files that a case names: the disk, unless a method says otherwise.
+pub trait Files {
+    /// The polygons of a file, as one part of the plane.
+    ///
+    /// # Errors
+    /// What is wrong with the file, naming it.
+    fn outlines(&self, path: &Path) -> Result<Box<dyn Outline>, String>;
+
+    /// Whether there is a file of this name.
+    ///
+    /// # Errors
+    /// Why it cannot be read.
+    fn find(&self, path: &Path) -> io::Result<()> {
+        match std::fs::metadata(path)?.is_file() {
+            true => Ok(()),
+            false => Err(io::Error::new(io::ErrorKind::InvalidInput, "it is not a file")),
+        }
+    }
+
+    /// The content of a file.
+    ///
+    /// # Errors
+    /// Why it cannot be read.
+    fn bytes(&self, path: &Path) -> io::Result<Vec<u8>> {
+        std::fs::read(path)
+    }
+
+    /// Names of the files in a folder, `None` if there is no such folder.
+    fn names(&self, folder: &Path) -> Option<Vec<String>> {
+        let entries = std::fs::read_dir(folder).ok()?.flatten();
+        let files = entries.filter(|entry| entry.path().is_file());
+        Some(files.map(|entry| entry.file_name().to_string_lossy().into_owned()).collect())
+    }
+}
+
+/// A part of the plane that polygons bound, with its rim; their holes are not of it.
+pub trait Outline: Debug + Send + Sync {
+    /// Whether a place belongs to it.
+    fn holds(&self, place: [f64; 2]) -> bool;
+    /// Distance of a place from the rim, positive within.
+    fn depth(&self, place: [f64; 2]) -> f64;
+    /// The ends [low, high] along x and y.
+    fn bounds(&self) -> [[f64; 2]; 2];
+}
+
+/// There are no files: every case that names one is refused.
+#[derive(Debug, Clone, Copy, Default)]
+pub struct NoFiles;
+
+impl NoFiles {
+    const REFUSED: &str = "files are not read here";
+}
+
+impl Files for NoFiles {
+    fn outlines(&self, _path: &Path) -> Result<Box<dyn Outline>, String> {
+        Err(Self::REFUSED.to_owned())
+    }
+
+    fn find(&self, _path: &Path) -> io::Result<()> {
+        Err(io::Error::new(io::ErrorKind::Unsupported, Self::REFUSED))
+    }
+
+    fn bytes(&self, path: &Path) -> io::Result<Vec<u8>> {
+        self.find(path).map(|()| Vec::new())
+    }
+
+    fn names(&self, _folder: &Path) -> Option<Vec<String>> {
+        Some(Vec::new())
+    }
+}
+
+/// The disk, without a reader of polygons; it finds the case file itself.
+struct Disk;
+
+impl Files for Disk {
+    fn outlines(&self, path: &Path) -> Result<Box<dyn Outline>, String> {
+        NoFiles.outlines(path)
+    }
+}
+
+/// The text of a case file; one that cannot be read is answered with the nearest name that exists.
+pub(crate) fn read_case(path: &Path) -> Result<String, CaseError> {
+    let name = path.display().to_string();
+    let bytes = Disk.bytes(path).map_err(|error| {
+        with_neighbour(
+            CaseError::unreadable(&name, format!("cannot read the case file: {error}")),
+            path,
+            &Disk,
+        )
+    })?;
+    String::from_utf8(bytes)
+        .map_err(|_| CaseError::unreadable(&name, "this is not UTF-8 text, so it is no case file".to_owned()))
+}
+
+/// Adds the nearest name to an error about a file that cannot be read.
+pub(crate) fn with_neighbour(error: CaseError, path: &Path, files: &dyn Files) -> CaseError {
+    let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
+    let wanted = path.file_name().map(|name| name.to_string_lossy().into_owned()).unwrap_or_default();
+    let Some(names) = files.names(folder) else {
+        return error.help(format!("the folder {} does not exist", folder.display()));
+    };
+    match nearest(&wanted, names.iter().map(String::as_str).filter(|name| *name != wanted)) {
+        Some(near) => error.help(format!("did you mean `{}`?", path.with_file_name(near).display())),
+        None => error,
+    }
+}

@@ -1,0 +1,198 @@
+//! The kinds of cases: a model with what it is computed on. Each has a folder and a line in [`kinds!`].
+
+use std::fmt::Debug;
+use std::sync::Arc;
+
+use schemars::{JsonSchema, Schema, SchemaGenerator};
+use serde::Serialize;
+use serde::de::DeserializeOwned;
+
+use super::checked::Checked;
+use super::fault::CaseError;
+use super::look::Look;
+use super::source::{Missing, Source};
+
+pub mod avalanche;
+pub mod chute;
+pub mod sandpile;
+pub mod terrain;
+
+/// Makes [`Kind`] and the list of kinds; the model of the first is the one of a case that names none.
+macro_rules! kinds {
+    ($($(#[$doc:meta])* $kind:ident: $folder:ident),+ $(,)?) => {
+        /// The numbers of a checked case that only its kind has.
+        #[derive(Debug)]
+        pub enum Kind {
+            $($(#[$doc])* $kind($folder::Plan),)+
+        }
+
+        const KINDS: &[Listed] = &[$(Listed::of::<$folder::Words>()),+];
+    };
+}
+
+kinds! {
+    /// An avalanche on a chute: savage_hutter on `[grid]`.
+    Chute: chute,
+    /// An avalanche on a mountain: savage_hutter on `[terrain]`.
+    Terrain: terrain,
+    /// A growing sandpile: hadeler_kuttler on `[grid]`.
+    Sandpile: sandpile,
+}
+
+/// The words of a case, of any kind.
+pub(crate) trait Words: Debug + Send + Sync {
+    /// Checks and evaluates the case.
+    fn check(&self, look: &Look) -> Result<Checked, CaseError>;
+    /// The words as TOML.
+    fn to_toml(&self) -> String;
+}
+
+/// A kind's struct of words.
+pub(crate) trait Written:
+    Debug + Send + Sync + Serialize + DeserializeOwned + JsonSchema + 'static
+{
+    /// What is said of the kind before its words are read.
+    const ABOUT: About;
+    /// Checks and evaluates the case.
+    fn check(&self, look: &Look) -> Result<Checked, CaseError>;
+}
+
+impl<W: Written> Words for W {
+    fn check(&self, look: &Look) -> Result<Checked, CaseError> {
+        Written::check(self, look)
+    }
+
+    fn to_toml(&self) -> String {
+        toml::to_string(self).unwrap_or_default()
+    }
+}
+
+/// What is said of a kind before its words are read.
+pub(crate) struct About {
+    /// Name of the model.
+    pub model: &'static str,
+    /// The table that tells kinds of one model apart.
+    pub place: &'static str,
+    /// Keys that not every model has.
+    pub keys: &'static [&'static str],
+    /// Keys of other kinds, each with an answer of its own.
+    pub foreign: &'static [Foreign],
+    /// Names of the schemes.
+    pub schemes: &'static [&'static str],
+    /// What `time.until` may be.
+    pub until: &'static [&'static str],
+    /// Keys that a case must have, with the answer where it has not.
+    pub missing: &'static [Missing],
+}
+
+/// A key that a kind does not have: `message`, else that it has no meaning for the model, and the cure.
+pub(crate) struct Foreign {
+    pub key: &'static str,
+    pub message: Option<&'static str>,
+    pub cure: &'static str,
+}
+
+/// A kind in the list.
+struct Listed {
+    about: About,
+    read: fn(toml::de::Deserializer) -> Result<Arc<dyn Words>, toml::de::Error>,
+    schema: fn(&mut SchemaGenerator) -> Schema,
+}
+
+impl Listed {
+    const fn of<W: Written>() -> Self {
+        Self {
+            about: W::ABOUT,
+            read: |document| Ok(Arc::new(W::deserialize(document)?)),
+            schema: |generator| generator.subschema_for::<W>(),
+        }
+    }
+}
+
+/// The words of a case, of the kind that it says.
+pub(crate) fn read(source: &Source) -> Result<Arc<dyn Words>, CaseError> {
+    let kind = choose(source)?;
+    kind.about.refuse_foreign(source)?;
+    let document = toml::de::Deserializer::from(source.document()?);
+    (kind.read)(document).map_err(|error| source.explain(&error, kind.about.missing))
+}
+
+/// The kind that `model` and the tables of a case ask for; where they leave it open, the first of the model.
+fn choose(source: &Source) -> Result<&'static Listed, CaseError> {
+    let mut models: Vec<&str> = KINDS.iter().map(|kind| kind.about.model).collect();
+    models.dedup();
+    let model = match source.word("model") {
+        Some(word) => word,
+        None if source.has("model") => {
+            let fault = source.fault("model", "expected the name of a model in quotes");
+            return Err(fault.help(format!("allowed: {}", models.join(", "))));
+        }
+        None => models[0].to_owned(),
+    };
+    let of_model: Vec<&Listed> = KINDS.iter().filter(|kind| kind.about.model == model).collect();
+    let Some(first) = of_model.first() else {
+        let message = format!("found `{model}`, which is not one of the choices");
+        return Err(source.fault("model", message).allowed(&model, models));
+    };
+    let placed: Vec<&Listed> = of_model.iter().copied().filter(|kind| source.has(kind.about.place)).collect();
+    match placed.as_slice() {
+        [] => Ok(first),
+        [one] => Ok(one),
+        [one, other, ..] => {
+            let [one, other] = [one, other].map(|kind| kind.about.place);
+            let message = format!("the case has both [{one}] and [{other}]");
+            Err(source.fault(other, message).help("keep one of them"))
+        }
+    }
+}
+
+impl About {
+    /// Refuses what belongs to other kinds; it is never ignored.
+    fn refuse_foreign(&self, source: &Source) -> Result<(), CaseError> {
+        let model = self.model;
+        if let Some(Foreign { key, message, cure }) = self.foreign.iter().find(|one| source.has(one.key)) {
+            let message =
+                message.map_or_else(|| format!("`{key}` has no meaning for {model}"), str::to_owned);
+            return Err(source.fault(key, message).help(*cure));
+        }
+        let (scheme, until) = (source.word("scheme.name"), source.word("time.until"));
+        for other in KINDS.iter().map(|kind| &kind.about).filter(|other| other.model != model) {
+            let foreign = |key: &&&str| source.has(key) && !self.keys.contains(key);
+            if let Some(key) = other.keys.iter().find(foreign) {
+                let message = format!("`{key}` belongs to the model {}", other.model);
+                let cure = format!("remove it, or write model = \"{}\"", other.model);
+                return Err(source.fault(key, message).help(cure));
+            }
+            if let Some(name) = strange(scheme.as_deref(), other.schemes, self.schemes) {
+                let message = format!("the scheme {name} is not one of {model}");
+                let cure = format!("allowed: {}", self.schemes.join(", "));
+                return Err(source.fault("scheme.name", message).help(cure));
+            }
+            if let Some(word) = strange(until.as_deref(), other.until, self.until) {
+                let message = format!("{model} has no end \"{word}\"");
+                let own = self.until.join("\" or \"");
+                return Err(source.fault("time.until", message).help(format!("write until = \"{own}\"")));
+            }
+        }
+        Ok(())
+    }
+}
+
+/// The word, if the other kind has it and this one has not.
+fn strange<'a>(word: Option<&'a str>, other: &[&str], own: &[&str]) -> Option<&'a str> {
+    word.filter(|word| other.contains(word) && !own.contains(word))
+}
+
+/// The JSON Schema of the case file: one of the kinds.
+#[must_use]
+pub fn json_schema() -> serde_json::Value {
+    let mut generator = SchemaGenerator::default();
+    let kinds: Vec<Schema> = KINDS.iter().map(|kind| (kind.schema)(&mut generator)).collect();
+    let dialect = generator.settings().meta_schema.clone();
+    serde_json::json!({
+        "$schema": dialect,
+        "title": "granflow case",
+        "anyOf": kinds,
+        "$defs": generator.take_definitions(true),
+    })
+}

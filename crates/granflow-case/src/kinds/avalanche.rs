@@ -1,0 +1,55 @@
+//! What the kinds of avalanches share: friction, schemes and ends of savage_hutter.
+
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+mod friction;
+mod scheme;
+mod time;
+
+pub use friction::Material;
+pub use scheme::SchemeName;
+
+pub(super) use scheme::NAMES as SCHEMES;
+
+pub(super) use friction::{EarthPressure, Friction};
+pub(super) use scheme::Scheme;
+pub(super) use time::Time;
+
+use crate::source::Missing;
+
+/// Name of the model.
+pub(super) const MODEL: &str = "savage_hutter";
+
+/// Keys that not every model has and both kinds of avalanches know.
+pub(super) const KEYS: [&str; 4] = ["material", "scheme.film", "time.rest_speed", "time.stop"];
+
+/// What `time.until` may be.
+pub(super) const UNTIL: &[&str] = &["rest"];
+
+/// The law is missing.
+pub(super) const NO_FRICTION: Missing = Missing {
+    key: "material.friction",
+    message: None,
+    cure: "say a law, for instance friction.coulomb = { angle = \"25 deg\" }; none is friction.coulomb = { mu = 0.0 }",
+};
+
+/// The material is missing.
+pub(super) const NO_MATERIAL: Missing =
+    Missing { key: "material", message: None, cure: "add a table [material] with the friction law" };
+
+/// The end is missing.
+pub(super) const NO_TIME: Missing = Missing {
+    key: "time",
+    message: None,
+    cure: "add a table [time] with steps, end, until = \"rest\" or stop.kinetic_energy",
+};
+
+/// The model of an avalanche.
+#[derive(Debug, Clone, Copy, Default, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub(super) enum Model {
+    /// A granular avalanche, depth-averaged (Savage & Hutter 1989).
+    #[default]
+    SavageHutter,
+}

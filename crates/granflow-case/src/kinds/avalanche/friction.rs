@@ -1,0 +1,212 @@
+//! What flows, and what holds it back: friction laws, earth pressure, the material in plain numbers.
+
+use std::f64::consts::FRAC_PI_2;
+
+use granflow_model::savage_hutter::friction as law;
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+use crate::fault::CaseError;
+use crate::look::Look;
+use crate::units::{Angle, RADIANS};
+
+/// What flows and what holds it back, in plain numbers.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Material {
+    /// Name of the friction law, as the case file writes it.
+    pub friction: &'static str,
+    /// Coefficient of the friction that grows with the load, mu = tan(delta).
+    pub mu: f64,
+    /// The friction law.
+    pub law: law::Law,
+    /// The earth-pressure coefficient k.
+    pub pressure_coefficient: f64,
+    /// Gravity g: m/s^2 on terrain, 1 where times are scaled by sqrt(L/g).
+    pub gravity: f64,
+    /// Bulk density rho, kg/m^3 on terrain.
+    pub density: f64,
+}
+
+/// The earth-pressure coefficient k in beta = epsilon k cos(zeta).
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub(crate) enum EarthPressure {
+    /// k = 1.
+    #[default]
+    Isotropic,
+    /// k = 1 + 2 tan(delta)^2, internal friction equal to bed friction (Kaland & Struckmeier 2007).
+    Kaland,
+}
+
+/// The friction law: the acceleration that resists motion, per normal load N+ and thickness h.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub(crate) enum Friction {
+    /// Coulomb: mu N+.
+    Coulomb(Coulomb),
+    /// Voellmy: mu N+ + g |V|^2/(xi h).
+    Voellmy(Voellmy),
+    /// Coulomb with cohesion: mu N+ + tau0/(rho h).
+    Cohesion(Cohesion),
+    /// samosAT, the default law of AvaFrame: [tau0 + mu sigma (1 + rs0/(rs0 + Rs)) + rho |V|^2/(ln(h/r)/kappa + b)^2]/(rho h).
+    Samosat(Samosat),
+}
+
+/// Coulomb friction; give `angle` or `mu`.
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub(crate) struct Coulomb {
+    /// Friction angle delta, mu = tan(delta).
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub angle: Option<Angle>,
+    /// Friction coefficient mu.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub mu: Option<f64>,
+}
+
+/// Voellmy friction; give `angle` or `mu`.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub(crate) struct Voellmy {
+    /// Friction angle delta, mu = tan(delta).
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub angle: Option<Angle>,
+    /// Friction coefficient mu.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub mu: Option<f64>,
+    /// Turbulent friction xi in m/s^2.
+    pub xi: f64,
+}
+
+/// Coulomb friction with cohesion; give `angle` or `mu`.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub(crate) struct Cohesion {
+    /// Friction angle delta, mu = tan(delta).
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub angle: Option<Angle>,
+    /// Friction coefficient mu.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub mu: Option<f64>,
+    /// Cohesion tau0 in Pa.
+    pub tau0: f64,
+}
+
+/// The samosAT law with AvaFrame's default values.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields, default)]
+pub(crate) struct Samosat {
+    /// Friction coefficient mu (default 0.155).
+    pub mu: f64,
+    /// Yield stress tau0 in Pa (default 0).
+    pub tau0: f64,
+    /// Constant Rs0 of the fluidisation factor (default 0.222).
+    pub rs0: f64,
+    /// Karman constant kappa (default 0.43).
+    pub kappa: f64,
+    /// Roughness length R in m (default 0.05).
+    pub r: f64,
+    /// Constant B of the logarithmic profile (default 4.13).
+    pub b: f64,
+}
+
+impl Default for Samosat {
+    fn default() -> Self {
+        Self { mu: 0.155, tau0: 0.0, rs0: 0.222, kappa: 0.43, r: 0.05, b: 4.13 }
+    }
+}
+
+impl EarthPressure {
+    /// The coefficient k under a friction coefficient mu.
+    fn coefficient(self, mu: f64) -> f64 {
+        match self {
+            Self::Isotropic => 1.0,
+            Self::Kaland => 1.0 + 2.0 * mu.powi(2),
+        }
+    }
+}
+
+impl Friction {
+    /// The name a case file writes.
+    pub fn name(&self) -> &'static str {
+        match self {
+            Self::Coulomb(_) => "coulomb",
+            Self::Voellmy(_) => "voellmy",
+            Self::Cohesion(_) => "cohesion",
+            Self::Samosat(_) => "samosat",
+        }
+    }
+
+    /// The law and what it acts on, in plain numbers.
+    pub fn material(
+        &self,
+        look: &Look,
+        pressure: EarthPressure,
+        gravity: f64,
+        density: f64,
+    ) -> Result<Material, CaseError> {
+        let mu = self.check(look)?;
+        let law = match self {
+            Self::Coulomb(_) => law::Law::Coulomb(law::Coulomb { mu }),
+            Self::Voellmy(law) => law::Law::Voellmy(law::Voellmy { mu, xi: law.xi, gravity }),
+            Self::Cohesion(law) => law::Law::Cohesion(law::Cohesion { mu, bond: law.tau0 / density }),
+            Self::Samosat(Samosat { tau0, rs0, kappa, r, b, .. }) => {
+                let bond = tau0 / density;
+                law::Law::SamosAt(law::SamosAt { mu, bond, rs0: *rs0, kappa: *kappa, r: *r, b: *b })
+            }
+        };
+        let pressure_coefficient = pressure.coefficient(mu);
+        Ok(Material { friction: self.name(), mu, law, pressure_coefficient, gravity, density })
+    }
+
+    /// The ranges of the law's numbers; its mu = tan(delta).
+    fn check(&self, look: &Look) -> Result<f64, CaseError> {
+        let at = format!("material.friction.{}", self.name());
+        let key = |name: &str| format!("{at}.{name}");
+        let mu = match self {
+            Self::Coulomb(Coulomb { angle, mu })
+            | Self::Voellmy(Voellmy { angle, mu, .. })
+            | Self::Cohesion(Cohesion { angle, mu, .. }) => self.coefficient(look, *angle, *mu)?,
+            Self::Samosat(law) => self.coefficient(look, None, Some(law.mu))?,
+        };
+        match self {
+            Self::Coulomb(_) => {}
+            Self::Voellmy(law) => look.positive(&key("xi"), Some(law.xi))?,
+            Self::Cohesion(law) => look.not_negative(&key("tau0"), Some(law.tau0))?,
+            Self::Samosat(law) => {
+                look.not_negative(&key("tau0"), Some(law.tau0))?;
+                look.not_negative(&key("rs0"), Some(law.rs0))?;
+                look.positive(&key("kappa"), Some(law.kappa))?;
+                look.positive(&key("r"), Some(law.r))?;
+                look.positive(&key("b"), Some(law.b))?;
+            }
+        }
+        Ok(mu)
+    }
+
+    /// mu from exactly one of the two ways to write it.
+    fn coefficient(&self, look: &Look, angle: Option<Angle>, mu: Option<f64>) -> Result<f64, CaseError> {
+        let name = self.name();
+        let at = format!("material.friction.{name}");
+        match (angle, mu) {
+            (Some(_), Some(_)) => {
+                let cure = format!(
+                    "keep one of angle and mu = tan(angle); with --set replace the table: --set 'material.friction={{{name}={{mu=0.3}}}}'"
+                );
+                Err(look.fault(&format!("{at}.mu"), "both `angle` and `mu` are given", &cure))
+            }
+            (None, None) => {
+                let cure = "add angle = \"25 deg\" or mu = 0.4";
+                Err(look.fault(&at, "neither `angle` nor `mu` is given", cure))
+            }
+            (Some(angle), None) => {
+                let allowed = "an angle from 0 to below 90 deg (1.5708 rad)";
+                let fits = |v: f64| (0.0..FRAC_PI_2).contains(&v);
+                look.number(&format!("{at}.angle"), angle.radians(), fits, allowed)
+                    .map_err(|error| error.help(RADIANS))?;
+                Ok(angle.radians().tan())
+            }
+            (None, Some(mu)) => look.not_negative(&format!("{at}.mu"), Some(mu)).map(|()| mu),
+        }
+    }
+}

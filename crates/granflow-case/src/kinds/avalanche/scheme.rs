@@ -1,0 +1,115 @@
+//! `[scheme]` of an avalanche: which method, which time step, which films.
+
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+use crate::checked::Stepping;
+use crate::fault::CaseError;
+use crate::look::{Look, StepLimits};
+
+/// The numerical method.
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+#[schemars(rename = "AvalancheScheme")]
+pub(crate) struct Scheme {
+    /// Name of the method.
+    #[serde(default)]
+    pub name: SchemeName,
+    /// A fixed time step; instead of `courant`.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub step: Option<f64>,
+    /// Courant number of the adaptive step: at most 1 (default 0.9) at first order, 0.5 (default 0.45) at second.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub courant: Option<f64>,
+    /// Thickness below which a cell is a film and is held (default 1e-6; 0 is allowed; without effect on verfahren_1..5).
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub film: Option<f64>,
+}
+
+/// The methods: the five published ones (Kaland 2007) and the conservative ones.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+#[schemars(rename = "AvalancheSchemeName")]
+pub enum SchemeName {
+    /// Conservative, positive, exactly resting, first order: the default.
+    #[default]
+    Balanced,
+    /// The same at second order in space and time.
+    #[serde(rename = "balanced_2")]
+    Balanced2,
+    /// Kaland's Verfahren 1, Scheme 1 of Kaland & Struckmeier (2007); alias scheme_1.
+    #[serde(rename = "verfahren_1", alias = "scheme_1")]
+    Verfahren1,
+    /// Kaland's Verfahren 2.
+    #[serde(rename = "verfahren_2")]
+    Verfahren2,
+    /// Kaland's Verfahren 3.
+    #[serde(rename = "verfahren_3")]
+    Verfahren3,
+    /// Kaland's Verfahren 4, Scheme 2 of Kaland & Struckmeier (2007); alias scheme_2.
+    #[serde(rename = "verfahren_4", alias = "scheme_2")]
+    Verfahren4,
+    /// Kaland's Verfahren 5, Scheme 3 of Kaland & Struckmeier (2007); alias scheme_3.
+    #[serde(rename = "verfahren_5", alias = "scheme_3")]
+    Verfahren5,
+}
+
+/// The names of all methods.
+pub(crate) const NAMES: &[&str] = &[
+    SchemeName::Balanced.as_str(),
+    SchemeName::Balanced2.as_str(),
+    SchemeName::Verfahren1.as_str(),
+    SchemeName::Verfahren2.as_str(),
+    SchemeName::Verfahren3.as_str(),
+    SchemeName::Verfahren4.as_str(),
+    SchemeName::Verfahren5.as_str(),
+];
+
+impl SchemeName {
+    /// The name a case file writes and the summary repeats.
+    #[must_use]
+    pub const fn as_str(self) -> &'static str {
+        match self {
+            Self::Balanced => "balanced",
+            Self::Balanced2 => "balanced_2",
+            Self::Verfahren1 => "verfahren_1",
+            Self::Verfahren2 => "verfahren_2",
+            Self::Verfahren3 => "verfahren_3",
+            Self::Verfahren4 => "verfahren_4",
+            Self::Verfahren5 => "verfahren_5",
+        }
+    }
+
+    /// Whether it is one of the five published methods, which know neither films nor rest.
+    #[must_use]
+    pub fn is_published(self) -> bool {
+        !matches!(self, Self::Balanced | Self::Balanced2)
+    }
+
+    /// What a case may say about the step.
+    pub(crate) fn limits(self) -> StepLimits {
+        let max_courant = if self == Self::Balanced2 { 0.5 } else { 1.0 };
+        StepLimits { scheme: self.as_str(), max_courant, share: 0.9 }
+    }
+}
+
+impl Scheme {
+    /// How the time step is chosen.
+    pub fn check(&self, look: &Look) -> Result<Stepping, CaseError> {
+        let stepping = look.stepping(self.step, self.courant, self.name.limits())?;
+        look.not_negative("scheme.film", self.film)?;
+        Ok(stepping)
+    }
+
+    /// Thickness below which a cell is a film; the published methods know none, so it is 0 for them.
+    pub fn film(&self) -> f64 {
+        if self.name.is_published() { 0.0 } else { self.film.unwrap_or(1e-6) }
+    }
+
+    /// What has no effect, if anything.
+    pub fn note(&self) -> Option<String> {
+        let idle = self.name.is_published() && self.film.is_some_and(|film| film > 0.0);
+        let name = self.name.as_str();
+        idle.then(|| format!("{name} is computed as published, without films: scheme.film has no effect"))
+    }
+}

@@ -1,0 +1,283 @@
+//! An avalanche on a chute: savage_hutter on `[grid]`.
+
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+use super::avalanche::{self, EarthPressure, Friction, Material, SchemeName};
+use super::{About, Foreign, Kind, Written};
+use crate::boundary::{Boundary, Side};
+use crate::checked::{Checked, RunPlan};
+use crate::fault::CaseError;
+use crate::grid::{Axis, Grid, Points};
+use crate::look::Look;
+use crate::output::{ON_A_GRID, Output};
+use crate::precision::Precision;
+use crate::quantity::Quantity;
+use crate::source::Missing;
+
+mod slope;
+
+use slope::{Columns, Slope};
+
+/// An avalanche on a chute, in plain numbers.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Plan {
+    /// The cells.
+    pub grid: Grid,
+    /// What happens at the low and the high edge along x and along y.
+    pub sides: [[Side; 2]; 2],
+    /// Inclination zeta of the chute at the centre of every column of cells, in radians, positive downhill along +x.
+    pub zeta: Vec<f64>,
+    /// Mean curvature kappa = -d zeta/dx of every column.
+    pub kappa: Vec<f64>,
+    /// Ratio of the scales of height and length, epsilon = H/L.
+    pub epsilon: f64,
+    /// Characteristic curvature eta = L/R.
+    pub eta: f64,
+    /// What flows, and what holds it back.
+    pub material: Material,
+    /// The scheme.
+    pub scheme: SchemeName,
+    /// Thickness below which a cell is a film.
+    pub film: f64,
+    /// The state at the start.
+    pub initial: InitialState,
+}
+
+/// The state at time 0 at the centres of the cells, x fastest.
+#[derive(Debug, Clone, PartialEq)]
+pub struct InitialState {
+    /// Thickness h, not negative.
+    pub thickness: Vec<f64>,
+    /// Velocity along x.
+    pub velocity_x: Vec<f64>,
+    /// Velocity along y, 0 in one dimension.
+    pub velocity_y: Vec<f64>,
+}
+
+/// An avalanche in the papers' scaling, on a chute.
+#[derive(Debug, Clone, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+#[schemars(rename = "Chute")]
+pub(crate) struct Words {
+    /// What the figures and the report are headed with.
+    #[serde(default)]
+    title: String,
+    /// The model.
+    #[serde(default)]
+    model: avalanche::Model,
+    /// The cells.
+    grid: Bounded,
+    /// The material and the chute it flows down.
+    material: OnChute,
+    /// The state at the start.
+    initial: Initial,
+    /// The method.
+    #[serde(default)]
+    scheme: avalanche::Scheme,
+    /// The end of the run.
+    time: avalanche::Time,
+    /// The files.
+    #[serde(default)]
+    output: Output,
+}
+
+/// A regular grid along x, and along y if the case is two-dimensional, in the case's unit of length.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+#[schemars(rename = "ChuteGrid")]
+struct Bounded {
+    /// The cells along x, down the chute.
+    x: Axis,
+    /// The cells along y, across the chute; without it the case is one-dimensional.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    y: Option<Axis>,
+    /// What happens at the edges: one word for all, or { x = ..., y = ... } with a word or a pair [low, high] each (default
+    /// "open").
+    #[serde(default)]
+    boundary: Boundary,
+}
+
+/// The material and the chute it flows down.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+#[schemars(rename = "ChuteMaterial")]
+struct OnChute {
+    /// Ratio of the scales of height and length, epsilon = H/L (default 1: heights and lengths in one unit).
+    #[serde(skip_serializing_if = "Option::is_none")]
+    epsilon: Option<f64>,
+    /// Inclination zeta of the chute, positive downhill along +x: an angle, or a profile over x (default 0).
+    #[serde(skip_serializing_if = "Option::is_none")]
+    slope: Option<Slope>,
+    /// Characteristic curvature eta = L/R of a curved chute, the factor of kappa u^2 in the friction (default 1).
+    #[serde(skip_serializing_if = "Option::is_none")]
+    eta: Option<f64>,
+    /// Bulk density rho (default 1).
+    #[serde(skip_serializing_if = "Option::is_none")]
+    density: Option<f64>,
+    /// The friction law at the bed.
+    friction: Friction,
+    /// The earth-pressure coefficient k.
+    #[serde(default)]
+    earth_pressure: EarthPressure,
+    /// Gravity g (default 1: times are scaled by sqrt(L/g)).
+    #[serde(skip_serializing_if = "Option::is_none")]
+    gravity: Option<f64>,
+}
+
+/// The state at time 0 at the centres of the cells.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+#[schemars(rename = "ChuteInitial")]
+struct Initial {
+    /// Thickness h, not negative.
+    thickness: Quantity,
+    /// Velocity along x (default 0).
+    #[serde(skip_serializing_if = "Option::is_none")]
+    velocity_x: Option<Quantity>,
+    /// Velocity along y (default 0).
+    #[serde(skip_serializing_if = "Option::is_none")]
+    velocity_y: Option<Quantity>,
+}
+
+impl Written for Words {
+    const ABOUT: About = About {
+        model: avalanche::MODEL,
+        place: "grid",
+        keys: &KEYS,
+        foreign: FOREIGN,
+        schemes: avalanche::SCHEMES,
+        until: avalanche::UNTIL,
+        missing: MISSING,
+    };
+
+    fn check(&self, look: &Look) -> Result<Checked, CaseError> {
+        let Self { title, grid, material, initial, scheme, time, output, .. } = self;
+        let cells = Grid { x: grid.x.clone(), y: grid.y.clone() };
+        cells.check(look)?;
+        let sides = grid.boundary.check(look, &cells)?;
+        let (material, Columns { zeta, kappa }) = material.check(look, &cells.x)?;
+        let stepping = scheme.check(look)?;
+        self.check_published(look)?;
+        let ends = time.check(look, scheme.name)?;
+        let (frames, files, precision) = output.check(look, &ends, ON_A_GRID, Precision::F64)?;
+        let initial = initial.check(look, &cells)?;
+        let run = RunPlan {
+            title: title.clone(),
+            model: avalanche::MODEL,
+            scheme: scheme.name.as_str(),
+            stepping,
+            max_courant: scheme.name.limits().max_courant,
+            ends,
+            frames,
+            files,
+            precision,
+            notes: scheme.note().into_iter().chain(ends.note()).collect(),
+            source: look.source.clone(),
+        };
+        let kind = Kind::Chute(Plan {
+            grid: cells,
+            sides,
+            zeta,
+            kappa,
+            epsilon: self.material.epsilon.unwrap_or(1.0),
+            eta: self.material.eta.unwrap_or(1.0),
+            material,
+            scheme: scheme.name,
+            film: scheme.film(),
+            initial,
+        });
+        Ok(Checked { run, kind })
+    }
+}
+
+impl Words {
+    /// What the published schemes cannot do.
+    fn check_published(&self, look: &Look) -> Result<(), CaseError> {
+        if !self.scheme.name.is_published() {
+            return Ok(());
+        }
+        let name = self.scheme.name.as_str();
+        let refuse = |key: &str, what: &str| {
+            let cure = "use the scheme balanced or balanced_2, which can";
+            Err(look.fault(key, format!("{name} {what}"), cure))
+        };
+        let friction = &self.material.friction;
+        if !matches!(friction, Friction::Coulomb(_)) {
+            return refuse(&format!("material.friction.{}", friction.name()), "knows Coulomb friction only");
+        }
+        if matches!(self.material.slope, Some(Slope::Profile(_))) {
+            return refuse("material.slope", "works on a constant slope only");
+        }
+        Ok(())
+    }
+}
+
+impl OnChute {
+    fn check(&self, look: &Look, axis: &Axis) -> Result<(Material, Columns), CaseError> {
+        look.positive("material.epsilon", self.epsilon)?;
+        look.positive("material.gravity", self.gravity)?;
+        look.positive("material.density", self.density)?;
+        look.not_negative("material.eta", self.eta)?;
+        let (gravity, density) = (self.gravity.unwrap_or(1.0), self.density.unwrap_or(1.0));
+        let material = self.friction.material(look, self.earth_pressure, gravity, density)?;
+        let columns = self.slope.clone().unwrap_or_default().check(look, axis)?;
+        Ok((material, columns))
+    }
+}
+
+impl Initial {
+    fn check(&self, look: &Look, grid: &Grid) -> Result<InitialState, CaseError> {
+        let quantities = [
+            ("initial.thickness", Some(&self.thickness)),
+            ("initial.velocity_x", self.velocity_x.as_ref()),
+            ("initial.velocity_y", self.velocity_y.as_ref()),
+        ];
+        for (key, quantity) in quantities {
+            if let Some(path) = quantity.and_then(Quantity::needs_file) {
+                look.file(&format!("{key}.file"), path)?;
+            }
+        }
+        let [(h, thickness), (u, along), (v, across)] = quantities;
+        if across.is_some() && grid.y.is_none() {
+            return Err(look.fault(v, "the grid has no y", "remove velocity_y, or add grid.y"));
+        }
+        let points: Points = grid.centres();
+        Ok(InitialState {
+            thickness: look.layer(&points, h, thickness)?,
+            velocity_x: look.evaluate(&points, u, along)?,
+            velocity_y: look.evaluate(&points, v, across)?,
+        })
+    }
+}
+
+/// Keys that not every model has.
+const KEYS: [&str; 8] = {
+    let [material, film, rest_speed, stop] = avalanche::KEYS;
+    let [h, u, v] = ["initial.thickness", "initial.velocity_x", "initial.velocity_y"];
+    [material, film, rest_speed, stop, "grid.boundary", h, u, v]
+};
+
+/// Keys of other kinds.
+const FOREIGN: &[Foreign] = &[Foreign {
+    key: "release",
+    message: Some("[[release]] needs [terrain]"),
+    cure: "on a grid write [initial] thickness instead",
+}];
+
+/// Keys that a case must have.
+const MISSING: &[Missing] = &[
+    Missing {
+        key: "grid",
+        message: Some("the case has neither [grid] nor [terrain]"),
+        cure: "add [grid] for a scaled case, [terrain] for a mountain; `granflow new --list` shows cases to start from",
+    },
+    Missing {
+        key: "initial",
+        message: Some("a case with [grid] needs an [initial] thickness"),
+        cure: "add for instance initial.thickness = 1.0",
+    },
+    avalanche::NO_MATERIAL,
+    avalanche::NO_FRICTION,
+    avalanche::NO_TIME,
+];

@@ -1,0 +1,232 @@
+//! An avalanche on a mountain: savage_hutter on `[terrain]`.
+
+use std::path::PathBuf;
+
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+use super::avalanche::{self, EarthPressure, Friction, Material, SchemeName};
+use super::{About, Foreign, Kind, Written};
+use crate::checked::{Checked, RunPlan};
+use crate::fault::CaseError;
+use crate::look::Look;
+use crate::output::{FileKind, Output};
+use crate::precision::Precision;
+use crate::source::Missing;
+
+mod release;
+mod words;
+
+use words::Elevation;
+
+pub use release::{Attribute, Cap, Extent, Measured, Release, Thickness};
+
+/// An avalanche on a mountain, in plain numbers: metres, seconds.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Plan {
+    /// The elevation model: a GeoTIFF or ESRI ASCII grid.
+    pub dem: PathBuf,
+    /// Coordinate reference system where the file has none.
+    pub crs: Option<String>,
+    /// Size of the cells, if the raster is to be resampled.
+    pub cell: Option<f64>,
+    /// Span of the window that gradient and curvature of the bed come from, `None` for no curvature in the friction.
+    pub curvature: Option<f64>,
+    /// What is released at the start.
+    pub releases: Vec<Release>,
+    /// What flows, and what holds it back.
+    pub material: Material,
+    /// The scheme.
+    pub scheme: Order,
+    /// Thickness below which a cell is a film.
+    pub film: f64,
+}
+
+/// Order of the balanced scheme in space and time.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Order {
+    /// The scheme balanced.
+    First,
+    /// The scheme balanced_2.
+    Second,
+}
+
+/// An avalanche on a mountain.
+#[derive(Debug, Clone, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+#[schemars(rename = "Mountain")]
+pub(crate) struct Words {
+    /// What the figures and the report are headed with.
+    #[serde(default)]
+    title: String,
+    /// The model.
+    #[serde(default)]
+    model: avalanche::Model,
+    /// The mountain.
+    terrain: Elevation,
+    /// The material.
+    material: OnTerrain,
+    /// What is released at the start.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    release: Vec<release::Words>,
+    /// The method.
+    #[serde(default)]
+    scheme: avalanche::Scheme,
+    /// The end of the run.
+    time: avalanche::Time,
+    /// The files.
+    #[serde(default)]
+    output: Output,
+}
+
+/// The material.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+#[schemars(rename = "TerrainMaterial")]
+struct OnTerrain {
+    /// Bulk density rho in kg/m^3.
+    density: f64,
+    /// The friction law at the bed.
+    friction: Friction,
+    /// The earth-pressure coefficient k: isotropic.
+    #[serde(default)]
+    earth_pressure: EarthPressure,
+    /// Gravity g (default 9.81 m/s^2).
+    #[serde(skip_serializing_if = "Option::is_none")]
+    gravity: Option<f64>,
+}
+
+impl Written for Words {
+    const ABOUT: About = About {
+        model: avalanche::MODEL,
+        place: "terrain",
+        keys: &KEYS,
+        foreign: FOREIGN,
+        schemes: avalanche::SCHEMES,
+        until: avalanche::UNTIL,
+        missing: MISSING,
+    };
+
+    fn check(&self, look: &Look) -> Result<Checked, CaseError> {
+        let Self { title, terrain, material, release, scheme, time, output, .. } = self;
+        if release.is_empty() {
+            return Err(look.fault(
+                "release",
+                "a case with [terrain] needs a [[release]]",
+                "add [[release]] with polygons, raster or cap",
+            ));
+        }
+        let material = material.check(look)?;
+        let stepping = scheme.check(look)?;
+        let order = order(look, scheme.name)?;
+        let ends = time.check(look, scheme.name)?;
+        let (frames, files, precision) = output.check(look, &ends, FILES, Precision::F32)?;
+        let curvature = terrain.check(look)?;
+        let releases = release.iter().enumerate();
+        let releases = releases
+            .map(|(index, one)| one.check(look, &format!("release[{index}]")))
+            .collect::<Result<_, _>>()?;
+        look.file("terrain.dem", &terrain.dem)?;
+        for (index, one) in release.iter().enumerate() {
+            one.check_files(look, &format!("release[{index}]"))?;
+        }
+        let run = RunPlan {
+            title: title.clone(),
+            model: avalanche::MODEL,
+            scheme: scheme.name.as_str(),
+            stepping,
+            max_courant: scheme.name.limits().max_courant,
+            ends,
+            frames,
+            files,
+            precision,
+            notes: scheme.note().into_iter().chain(ends.note()).collect(),
+            source: look.source.clone(),
+        };
+        let kind = Kind::Terrain(Plan {
+            dem: look.locate(&terrain.dem),
+            crs: terrain.crs.clone(),
+            cell: terrain.cell,
+            curvature,
+            releases,
+            material,
+            scheme: order,
+            film: scheme.film(),
+        });
+        Ok(Checked { run, kind })
+    }
+}
+
+impl OnTerrain {
+    fn check(&self, look: &Look) -> Result<Material, CaseError> {
+        if self.earth_pressure != EarthPressure::Isotropic {
+            return Err(look.fault(
+                "material.earth_pressure",
+                "on terrain the earth pressure is isotropic in this version",
+                "remove it, or write earth_pressure = \"isotropic\"",
+            ));
+        }
+        look.positive("material.gravity", self.gravity)?;
+        look.positive("material.density", Some(self.density))?;
+        self.friction.material(look, self.earth_pressure, self.gravity.unwrap_or(9.81), self.density)
+    }
+}
+
+/// Only the balanced schemes work on terrain.
+fn order(look: &Look, scheme: SchemeName) -> Result<Order, CaseError> {
+    match scheme {
+        SchemeName::Balanced => Ok(Order::First),
+        SchemeName::Balanced2 => Ok(Order::Second),
+        SchemeName::Verfahren1
+        | SchemeName::Verfahren2
+        | SchemeName::Verfahren3
+        | SchemeName::Verfahren4
+        | SchemeName::Verfahren5 => Err(look.fault(
+            "scheme.name",
+            format!("{} works on a [grid] only, not on terrain", scheme.as_str()),
+            "use the scheme balanced or balanced_2, which can",
+        )),
+    }
+}
+
+/// Files of a case that does not say which.
+const FILES: &[FileKind] =
+    &[FileKind::Netcdf, FileKind::Figures, FileKind::Geotiff, FileKind::Vector, FileKind::Report];
+
+/// Keys that not every model has.
+const KEYS: [&str; 6] = {
+    let [material, film, rest_speed, stop] = avalanche::KEYS;
+    [material, film, rest_speed, stop, "terrain", "release"]
+};
+
+/// A key that only a scaled case has.
+const fn scaled(key: &'static str, message: &'static str) -> Foreign {
+    Foreign { key, message: Some(message), cure: "remove it" }
+}
+
+/// Keys of other kinds.
+const FOREIGN: &[Foreign] = &[
+    Foreign {
+        key: "initial",
+        message: Some("[initial] needs [grid]"),
+        cure: "on terrain write [[release]] instead",
+    },
+    scaled(
+        "material.epsilon",
+        "`epsilon` has no meaning on terrain, where everything is in metres and seconds",
+    ),
+    scaled("material.slope", "`slope` has no meaning on terrain, where everything is in metres and seconds"),
+    scaled("material.eta", "`eta` has no meaning on terrain, where everything is in metres and seconds"),
+];
+
+/// Keys that a case must have.
+const MISSING: &[Missing] = &[
+    avalanche::NO_MATERIAL,
+    Missing {
+        key: "material.density",
+        message: None,
+        cure: "the pressure on terrain needs it: density = 200.0 (kg/m^3, dry snow), 1500.0 (debris)",
+    },
+    avalanche::NO_FRICTION,
+    avalanche::NO_TIME,
+];

@@ -1,0 +1,168 @@
+//! `[[release]]`: what comes off the mountain.
+
+use std::path::PathBuf;
+
+use schemars::JsonSchema;
+use serde::{Deserialize, Deserializer, Serialize};
+
+use crate::choice::{Plain, plain_or_table};
+use crate::fault::CaseError;
+use crate::look::Look;
+
+/// Mass that is released at the start.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Release {
+    /// Where it is, and how thick.
+    pub extent: Extent,
+    /// How the thickness is measured.
+    pub measured: Measured,
+}
+
+/// Where a release is and how thick.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Extent {
+    /// Polygons of a shapefile or GeoJSON.
+    Polygons {
+        /// The file.
+        path: PathBuf,
+        /// Thickness in them.
+        thickness: Thickness,
+    },
+    /// Thickness in metres as a raster: GeoTIFF or ESRI ASCII grid.
+    Raster(PathBuf),
+    /// A parabolic cap.
+    Cap(Cap),
+}
+
+/// Mass that is released at the start: exactly one of `polygons`, `raster`, `cap`.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+#[schemars(rename = "Release")]
+pub(super) struct Words {
+    /// Polygons: a shapefile or GeoJSON.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub polygons: Option<PathBuf>,
+    /// Thickness in metres as a raster: GeoTIFF or ESRI ASCII grid.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub raster: Option<PathBuf>,
+    /// A parabolic cap.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub cap: Option<Cap>,
+    /// Thickness in the polygons: metres, or { attribute = "name" }.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub thickness: Option<Thickness>,
+    /// How the thickness is measured.
+    #[serde(default)]
+    pub measured: Measured,
+}
+
+/// A parabolic cap, height (1 - r^2/radius^2), r the horizontal distance.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+#[schemars(rename = "ReleaseCap")]
+pub struct Cap {
+    /// Thickness at the centre in metres.
+    pub height: f64,
+    /// Centre [x, y] in the raster's coordinates.
+    pub centre: [f64; 2],
+    /// Horizontal distance in metres at which the cap ends.
+    pub radius: f64,
+}
+
+/// Thickness of a release in polygons.
+#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
+#[serde(untagged)]
+pub enum Thickness {
+    /// The same everywhere, in metres.
+    Constant(f64),
+    /// From an attribute of each polygon.
+    Attribute(Attribute),
+}
+
+/// An attribute of the polygons that holds the thickness in metres.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Attribute {
+    /// Its name.
+    pub attribute: String,
+}
+
+impl<'de> Deserialize<'de> for Thickness {
+    fn deserialize<D: Deserializer<'de>>(from: D) -> Result<Self, D::Error> {
+        let expected = "a number (metres) or { attribute = \"thickness\" }";
+        let read = |value: Plain| match value {
+            Plain::Number(number) => Ok(Self::Constant(number)),
+            Plain::Text(text) => Err(format!("found the text \"{text}\", expected {expected}")),
+        };
+        plain_or_table(from, expected, read, Self::Attribute)
+    }
+}
+
+/// How a thickness is measured.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum Measured {
+    /// At right angles to the bed.
+    #[default]
+    Normal,
+    /// Along the vertical.
+    Vertical,
+}
+
+impl Words {
+    /// Checks the numbers; the files may be missing yet.
+    pub fn check(&self, look: &Look, key: &str) -> Result<Release, CaseError> {
+        let thickness_key = format!("{key}.thickness");
+        let measured = self.measured;
+        let extent = match (&self.polygons, &self.raster, &self.cap) {
+            (Some(path), None, None) => {
+                let Some(thickness) = self.thickness.clone() else {
+                    return Err(look.fault(
+                        &thickness_key,
+                        "the key `thickness` is missing",
+                        "add thickness = 1.0 (metres) or thickness = { attribute = \"thickness\" }",
+                    ));
+                };
+                if let Thickness::Constant(value) = thickness {
+                    look.positive(&thickness_key, Some(value))?;
+                }
+                return Ok(Release {
+                    extent: Extent::Polygons { path: look.locate(path), thickness },
+                    measured,
+                });
+            }
+            (None, Some(path), None) => Extent::Raster(look.locate(path)),
+            (None, None, Some(cap)) => Extent::Cap(cap.clone()),
+            _ => {
+                return Err(look.fault(
+                    key,
+                    "a release has exactly one of polygons, raster, cap",
+                    "split it into several [[release]] tables, or remove what is too much",
+                ));
+            }
+        };
+        if self.thickness.is_some() {
+            return Err(look.fault(
+                &thickness_key,
+                "`thickness` belongs to polygons",
+                "remove it: a raster or a cap has its own thickness",
+            ));
+        }
+        if let Extent::Cap(cap) = &extent {
+            look.positive(&format!("{key}.cap.height"), Some(cap.height))?;
+            look.positive(&format!("{key}.cap.radius"), Some(cap.radius))?;
+            for (index, value) in cap.centre.iter().enumerate() {
+                look.number(&format!("{key}.cap.centre[{index}]"), *value, |_| true, "a finite number")?;
+            }
+        }
+        Ok(Release { extent, measured })
+    }
+
+    /// The files must exist.
+    pub fn check_files(&self, look: &Look, key: &str) -> Result<(), CaseError> {
+        for (name, path) in [("polygons", &self.polygons), ("raster", &self.raster)] {
+            path.iter().try_for_each(|path| look.file(&format!("{key}.{name}"), path))?;
+        }
+        Ok(())
+    }
+}
