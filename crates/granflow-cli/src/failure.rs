@@ -1,6 +1,5 @@
 //! How the program fails: the message and the exit status, in one place.
 
-use std::fmt;
 use std::io::{self, Write};
 use std::path::Path;
 use std::process::ExitCode;
@@ -9,7 +8,8 @@ use granflow::case::{CaseError, CaseErrorKind};
 use granflow::results::FilesError;
 use granflow::run::RunError;
 use granflow::setup::SetupError;
-use miette::{Diagnostic, LabeledSpan, NamedSource, SourceCode};
+
+use crate::snippet::{self, Ink};
 
 /// Why a command did not do what it was asked.
 #[derive(Debug)]
@@ -22,7 +22,7 @@ pub enum Failure {
         cure: String,
     },
     /// The case is wrong (2), or a file it needs cannot be read (4).
-    Case(Box<CaseReport>),
+    Case(CaseError),
     /// The computation failed; the message names the state that was saved (3).
     Computation(String),
     /// A file could not be read or written (4).
@@ -46,7 +46,7 @@ impl Failure {
     fn status(&self) -> u8 {
         match self {
             Self::Usage { .. } => 2,
-            Self::Case(report) => match report.error.kind() {
+            Self::Case(error) => match error.kind() {
                 CaseErrorKind::Invalid => 2,
                 CaseErrorKind::File => 4,
             },
@@ -61,7 +61,7 @@ impl Failure {
         let status = ExitCode::from(self.status());
         let text = match self {
             Self::Usage { message, cure } => format!("error: {message}\n  help: {cure}\n"),
-            Self::Case(report) => format!("{:?}\n", miette::Report::new(*report)),
+            Self::Case(error) => snippet::shown(&error, Ink::of_standard_error()),
             Self::Computation(message) | Self::File(message) => format!("error: {message}\n"),
             Self::Interrupted(message) => format!("interrupted: {message}\n"),
         };
@@ -73,8 +73,7 @@ impl Failure {
 
 impl From<CaseError> for Failure {
     fn from(error: CaseError) -> Self {
-        let source = NamedSource::new(error.source_name(), error.text().to_owned());
-        Self::Case(Box::new(CaseReport { source, error }))
+        Self::Case(error)
     }
 }
 
@@ -102,40 +101,6 @@ impl From<RunError> for Failure {
 impl From<FilesError> for Failure {
     fn from(error: FilesError) -> Self {
         Self::File(error.to_string())
-    }
-}
-
-/// A case error with the lines it stands in, as miette shows it.
-#[derive(Debug)]
-pub struct CaseReport {
-    error: CaseError,
-    source: NamedSource<String>,
-}
-
-impl fmt::Display for CaseReport {
-    fn fmt(&self, to: &mut fmt::Formatter) -> fmt::Result {
-        to.write_str(&self.error.headline())
-    }
-}
-
-impl std::error::Error for CaseReport {}
-
-impl Diagnostic for CaseReport {
-    fn help(&self) -> Option<Box<dyn fmt::Display + '_>> {
-        let lines = self.error.help_lines();
-        if lines.is_empty() { None } else { Some(Box::new(lines.join("\n"))) }
-    }
-
-    fn source_code(&self) -> Option<&dyn SourceCode> {
-        self.error.span().map(|_| &self.source as &dyn SourceCode)
-    }
-
-    fn labels(&self) -> Option<Box<dyn Iterator<Item = LabeledSpan> + '_>> {
-        let span = self.error.span()?;
-        // a place behind the last byte (a bracket that never closes) is shown at the last byte
-        let start = span.start.min(self.error.text().len());
-        let length = span.len().min(self.error.text().len() - start);
-        Some(Box::new(std::iter::once(LabeledSpan::new(Some("here".to_owned()), start, length))))
     }
 }
 

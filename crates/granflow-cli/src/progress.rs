@@ -3,14 +3,12 @@
 use std::io::{self, IsTerminal, Write};
 use std::time::{Duration, Instant};
 
-use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
-
 /// Between two plain lines.
 const PLAIN: Duration = Duration::from_secs(5);
 /// Between two looks at the clock that redraw the bar.
 const BAR: Duration = Duration::from_millis(100);
-/// Parts of the bar.
-const PARTS: u64 = 1000;
+/// Letters of the bar.
+const WIDTH: usize = 24;
 
 /// Where a run is.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -70,11 +68,18 @@ fn words(time: Duration) -> String {
     }
 }
 
+/// Where the status is shown.
+#[derive(Debug, Clone, Copy, PartialEq)]
+enum Shown {
+    Bar,
+    Lines,
+    Nowhere,
+}
+
 /// Shows a run's status while it works.
 #[derive(Debug)]
 pub struct Progress {
-    bar: Option<ProgressBar>,
-    plain: bool,
+    how: Shown,
     start: Instant,
     begin: Option<f64>,
     shown: Option<Instant>,
@@ -83,38 +88,52 @@ pub struct Progress {
 impl Progress {
     /// A bar if standard error is a terminal, plain lines if not, nothing if `quiet`.
     pub fn new(quiet: bool) -> Self {
-        let terminal = io::stderr().is_terminal();
-        let bar = (terminal && !quiet).then(|| {
-            let bar = ProgressBar::with_draw_target(Some(PARTS), ProgressDrawTarget::stderr());
-            let style = ProgressStyle::with_template("{bar:24} {percent:>3} % {msg}");
-            style.into_iter().for_each(|style| bar.set_style(style));
-            bar
-        });
-        Self { bar, plain: !terminal && !quiet, start: Instant::now(), begin: None, shown: None }
+        let how = match (quiet, io::stderr().is_terminal()) {
+            (true, _) => Shown::Nowhere,
+            (false, true) => Shown::Bar,
+            (false, false) => Shown::Lines,
+        };
+        Self { how, start: Instant::now(), begin: None, shown: None }
     }
 
     /// Shows the status, if it is time to.
     pub fn show(&mut self, status: &Status) {
-        let pause = if self.bar.is_some() { BAR } else { PLAIN };
+        let pause = if self.how == Shown::Bar { BAR } else { PLAIN };
         let begin = *self.begin.get_or_insert(status.share().unwrap_or(0.0));
         if self.shown.is_some_and(|shown| shown.elapsed() < pause) {
             return;
         }
         self.shown = Some(Instant::now());
         let line = status.line(begin, self.start.elapsed());
-        if let Some(bar) = &self.bar {
-            bar.set_position((status.share().unwrap_or(0.0) * PARTS as f64) as u64);
-            bar.set_message(line);
-        } else if self.plain {
-            // nobody is left to be told if standard error is closed
-            let _ = writeln!(io::stderr(), "{line}");
+        match self.how {
+            Shown::Bar => tell(&bar(status.share().unwrap_or(0.0), &line)),
+            Shown::Lines => tell(&format!("{line}\n")),
+            Shown::Nowhere => {}
         }
     }
 
     /// Takes the bar away; the lines that follow stand alone.
     pub fn finish(&self) {
-        self.bar.iter().for_each(ProgressBar::finish_and_clear);
+        if self.how == Shown::Bar && self.shown.is_some() {
+            tell(CLEAR);
+        }
     }
+}
+
+/// Begins the line of a terminal again, empty.
+const CLEAR: &str = "\r\x1b[2K";
+
+/// The line of a bar in place of the one before, cut at the terminal's edge: wrapping is off while it is written.
+fn bar(share: f64, line: &str) -> String {
+    let full = (share * WIDTH as f64) as usize;
+    let [full, empty] = ["█".repeat(full), "░".repeat(WIDTH - full)];
+    format!("{CLEAR}\x1b[?7l{full}{empty} {:>3.0} % {line}\x1b[?7h", 100.0 * share)
+}
+
+/// Writes on standard error at once; nobody is left to be told if it is closed.
+fn tell(text: &str) {
+    let mut out = io::stderr().lock();
+    let _ = out.write_all(text.as_bytes()).and_then(|()| out.flush());
 }
 
 #[cfg(test)]
@@ -144,5 +163,16 @@ mod tests {
         let first = Status { time: 0.0, ..status };
         assert_eq!(first.left(0.0, Duration::from_secs(1)), None);
         assert_eq!(words(Duration::from_secs(7265)), "2 h 01 min");
+    }
+
+    #[test]
+    fn the_bar_fills_and_is_redrawn_in_place() {
+        let half = bar(0.5, "time 1");
+        assert!(
+            half.starts_with(CLEAR) && half.contains("████████████░░░░░░░░░░░░  50 % time 1"),
+            "{half:?}"
+        );
+        let full = bar(1.0, "");
+        assert!(full.contains(&"█".repeat(WIDTH)) && !full.contains('░') && !full.contains('\n'), "{full:?}");
     }
 }
