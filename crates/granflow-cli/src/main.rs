@@ -18,6 +18,7 @@ mod progress;
 mod reproduce;
 mod run;
 mod schema;
+mod snippet;
 
 use failure::Failure;
 
@@ -119,10 +120,6 @@ enum Command {
 }
 
 fn main() -> ExitCode {
-    // a closed pipe or a refused hook is no reason to fail: the default report is readable too
-    let _ = miette::set_hook(Box::new(|_| {
-        Box::new(miette::MietteHandlerOpts::new().wrap_lines(false).break_words(false).build())
-    }));
     match act(Arguments::parse().command) {
         Ok(()) => ExitCode::SUCCESS,
         Err(failure) => failure.report(),

@@ -106,7 +106,7 @@ pub enum StartError {
     Release(Box<granflow_geo::release::ReleaseError>),
     /// The numbers do not make a simulation.
     #[error(transparent)]
-    Setup(#[from] granflow_engine::simulation::SetupError),
+    Build(#[from] granflow_engine::simulation::BuildError),
     /// The library was built without a feature that this case needs.
     #[error("this needs granflow's feature `{feature}`: build with `--features {feature}`")]
     Feature {

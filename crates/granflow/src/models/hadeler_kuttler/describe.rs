@@ -1,7 +1,7 @@
 //! What a growing sandpile would compute: table, sources, layers at the start.
 
 use crate::describe::{Line, axis, case, effort, range};
-use granflow_case::kinds::sandpile::{Edge, Pile, Plan, Poured, SchemeName, TablePlan};
+use granflow_case::sandpile::{Edge, Pile, Plan, Poured, SchemeName, TablePlan};
 use granflow_case::{Axis, RunPlan, Until};
 use granflow_engine::simulation::Simulation;
 use granflow_model::hadeler_kuttler::scheme::HadelerKuttler;
@@ -20,7 +20,7 @@ pub(crate) fn lines(run: &RunPlan, plan: &Plan) -> Vec<Line> {
     for (name, along) in ["x", "y"].into_iter().zip(&axes) {
         lines.push((if name == "x" { "grid" } else { "" }, axis(name, along)));
     }
-    match &plan.poured {
+    match &plan.table {
         Poured::Line(pile) => lines.extend(on(run, pile, &axes)),
         Poured::Plane(pile) => lines.extend(on(run, pile, &axes)),
     }

@@ -6,7 +6,7 @@ use super::site::Site;
 use crate::StartError;
 use crate::results::Plane;
 use crate::run::{CellOf, Run, Simulated};
-use granflow_case::kinds::sandpile::{Pile, Plan, Poured, SchemeName, Sources, TablePlan};
+use granflow_case::sandpile::{Pile, Plan, Poured, SchemeName, Sources, TablePlan};
 use granflow_case::{Axis, Grid, RunPlan, Stepping, Until};
 use granflow_engine::simulation::{Simulation, StepSize};
 use granflow_model::hadeler_kuttler::direct::{Equilibrium, Unsteady};
@@ -15,13 +15,13 @@ use granflow_model::scheme::Side;
 
 /// The run of a case of growing sandpiles.
 pub(crate) fn start(run: &RunPlan, plan: Plan) -> Result<Box<dyn Run>, StartError> {
-    let Plan { scheme, theta_exponent, grid, poured } = plan;
+    let Plan { scheme, theta_exponent, grid, table } = plan;
     let scheme = match scheme {
         SchemeName::FirstOrder => FIRST_ORDER,
         SchemeName::SecondOrder => SECOND_ORDER,
         SchemeName::Adaptive => HadelerKuttler { slopes: Slopes::Adaptive { exponent: theta_exponent } },
     };
-    match poured {
+    match table {
         Poured::Line(pile) => on(run, &grid, *pile, scheme),
         Poured::Plane(pile) => on(run, &grid, *pile, scheme),
     }

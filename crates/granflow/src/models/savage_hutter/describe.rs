@@ -4,9 +4,9 @@ use super::{chute, terrain};
 use crate::StartError;
 use crate::describe::{Line, axis, case, effort, range};
 use crate::run::Run;
-use granflow_case::kinds::avalanche::Material;
-use granflow_case::kinds::terrain::Order;
-use granflow_case::kinds::{chute::Plan as OnChute, terrain::Plan as OnTerrain};
+use granflow_case::avalanche::Material;
+use granflow_case::terrain::Order;
+use granflow_case::{chute::Plan as OnChute, terrain::Plan as OnTerrain};
 use granflow_case::{Axis, RunPlan, Side};
 use granflow_geo::terrain::Terrain;
 

@@ -7,7 +7,7 @@ use crate::StartError;
 use crate::results::Plane;
 use crate::run::{Run, Simulated};
 use granflow_case::RunPlan;
-use granflow_case::kinds::terrain::{From, Measured, Order, Plan, Release, Thickness};
+use granflow_case::terrain::{From, Measured, Order, Plan, Release, Thickness};
 use granflow_engine::grid::Grid;
 use granflow_engine::simulation::Simulation;
 use granflow_geo::raster::{Crs, Raster};

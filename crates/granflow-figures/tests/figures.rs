@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use granflow::output::figures::{
+use granflow_figures::{
     Axis, Colours, Convergence, Curve, ErrorSeries, Extent, Figure, FigureError, Fill, Frame, HeatMap,
     History, HistoryPanel, Map, Outline, Overlay, Paint, Profiles, Section, Style, Surface,
 };
@@ -49,7 +49,9 @@ impl Png {
 /// Saves the figure, reads it back, and checks what holds for every figure.
 fn drawn(name: &str, figure: &dyn Figure) -> Png {
     let path = PathBuf::from(env!("CARGO_TARGET_TMPDIR")).join("figures").join(format!("{name}.png"));
-    figure.save(&path).unwrap();
+    let picture = figure.draw().unwrap();
+    std::fs::create_dir_all(path.parent().unwrap()).unwrap();
+    picture.write_png(&mut std::fs::File::create(&path).unwrap()).unwrap();
     let mut reader =
         png::Decoder::new(std::io::BufReader::new(std::fs::File::open(&path).unwrap())).read_info().unwrap();
     let mut rgb = vec![0; reader.output_buffer_size().unwrap()];
@@ -450,12 +452,6 @@ fn what_cannot_be_drawn_is_refused_by_name() {
     let nan = HeatMap { values: &[f64::NAN; 4], ..short };
     assert!(matches!(nan.draw(), Err(FigureError::Empty { .. })));
     assert!(matches!(Map::default().draw(), Err(FigureError::Empty { .. })));
-    let folder = tempfile::tempdir().unwrap();
-    let file = folder.path().join("file");
-    std::fs::write(&file, "").unwrap();
-    let sound = HeatMap { values: &[1.0; 4], ..short };
-    let message = sound.save(&file.join("inside.png")).unwrap_err().to_string();
-    assert!(message.contains("inside.png"), "{message}");
 }
 
 #[test]
