@@ -9,17 +9,17 @@ use granflow_case::{Kind, RunPlan};
 /// The run of a checked case.
 pub(crate) fn start(run: &RunPlan, kind: Kind) -> Result<Box<dyn Run>, StartError> {
     match kind {
-        Kind::Chute(plan) => savage_hutter::chute::start(run, plan),
-        Kind::Terrain(plan) => savage_hutter::terrain::start(run, &plan),
-        Kind::Sandpile(plan) => hadeler_kuttler::start::start(run, plan),
+        Kind::Chute(plan) => savage_hutter::run::chute::start(run, plan),
+        Kind::Terrain(plan) => savage_hutter::run::terrain::start(run, &plan),
+        Kind::Sandpile(plan) => hadeler_kuttler::run::start::start(run, plan),
     }
 }
 
 /// What a checked case would compute.
 pub(crate) fn describe(run: &RunPlan, kind: Kind) -> Result<Vec<Line>, StartError> {
     match kind {
-        Kind::Chute(plan) => savage_hutter::describe::chute(run, plan),
-        Kind::Terrain(plan) => savage_hutter::describe::terrain(run, &plan),
-        Kind::Sandpile(plan) => Ok(hadeler_kuttler::describe::lines(run, &plan)),
+        Kind::Chute(plan) => savage_hutter::run::describe::chute(run, plan),
+        Kind::Terrain(plan) => savage_hutter::run::describe::terrain(run, &plan),
+        Kind::Sandpile(plan) => Ok(hadeler_kuttler::run::describe::lines(run, &plan)),
     }
 }

@@ -9,7 +9,7 @@ mod frames;
 mod record;
 mod saved;
 mod simulated;
-mod view;
+mod field_view;
 
 pub use drive::{DriveError, drive};
 pub use frames::Frames;
@@ -19,13 +19,11 @@ pub use granflow_engine::simulation::{Failure, Totals};
 pub use record::Record;
 pub use saved::Saved;
 pub use simulated::{CellOf, Field, Numbers, Physics, Simulated, Value};
-pub use view::View;
+pub use field_view::FieldView;
 
-use crate::results::Plane;
+use crate::model::Plane;
+pub use crate::model::Maps;
 use granflow_engine::simulation::Stepper;
-
-/// Maps of the cells by name, x fastest, the first row in the south.
-pub type Maps = Vec<(&'static str, Vec<f64>)>;
 
 /// A run under way.
 pub trait Run: Send {
@@ -62,7 +60,7 @@ pub trait Run: Send {
 
     /// A field by its name, in the units of the run: a view of the engine's own numbers where they are the field, else
     /// computed. Names are those of [`Plane::series`].
-    fn field(&self, name: &str) -> Option<View<'_>>;
+    fn field(&self, name: &str) -> Option<FieldView<'_>>;
     /// As many numbers of field number `field` of [`Plane::series`] as `values` holds, from number `from` on, x fastest.
     fn fill(&self, field: usize, from: usize, values: &mut [f64]);
     /// Sums over all cells, taken now and noted in the record.

@@ -1,7 +1,7 @@
 //! A simulation of the engine as a [`Run`]: what a model adds to its scheme is its [`Physics`].
 
-use super::{Failure, Maps, Record, Run, Saved, Totals, View};
-use crate::results::Plane;
+use super::{Failure, Maps, Record, Run, Saved, Totals, FieldView};
+use crate::model::Plane;
 use granflow_engine::grid::Layout;
 use granflow_engine::kernels::Kernel;
 use granflow_engine::simulation::{Simulation, Stepper};
@@ -188,17 +188,17 @@ impl<const D: usize, P: Physics<D>> Run for Simulated<D, P> {
         self.physics.is_equilibrium()
     }
 
-    fn field(&self, name: &str) -> Option<View<'_>> {
+    fn field(&self, name: &str) -> Option<FieldView<'_>> {
         let number = self.fields.iter().position(|field| field.name == name)?;
         let field = &self.fields[number];
         let (shape, layout) = (self.shape(field), self.simulation.layout());
         if let (Value::Component(k), false) = (&field.value, self.physics.blanks()) {
             let values = Cow::Borrowed(self.simulation.arrays().parts[*k].as_slice());
-            return Some(View { values, start: layout.place(0, 0), shape, row: layout.stride });
+            return Some(FieldView { values, start: layout.place(0, 0), shape, row: layout.stride });
         }
         let mut values = vec![0.0; shape[0] * shape[1]];
         self.fill(number, 0, &mut values);
-        Some(View { values: values.into(), start: 0, shape, row: shape[1] })
+        Some(FieldView { values: values.into(), start: 0, shape, row: shape[1] })
     }
     fn fill(&self, field: usize, from: usize, values: &mut [f64]) {
         self.value(&self.fields[field], from, values);

@@ -3,7 +3,7 @@
 use super::schedule::{Due, Schedule};
 use super::{Sink, SinkError};
 use crate::output::ledger::Entry;
-use crate::results::Plane;
+use crate::model::Plane;
 use crate::run::{Maps, Run};
 use granflow_case::Frames;
 

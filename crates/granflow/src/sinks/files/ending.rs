@@ -6,7 +6,8 @@ use crate::case::FileKind;
 use crate::output::frames::Frames;
 use crate::output::ledger::{Entry, sum};
 use crate::output::summary::{StopReason, Summary};
-use crate::results::{Finished, Plane};
+use crate::model::Plane;
+use crate::results::Finished;
 use crate::run::{Maps, Run, Until};
 use std::path::PathBuf;
 

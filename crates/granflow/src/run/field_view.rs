@@ -4,7 +4,7 @@ use std::borrow::Cow;
 
 /// The numbers of a field: row `j`, column `i` is `values[start + j * row + i]`; rows from south to north.
 #[derive(Clone, Debug, PartialEq)]
-pub struct View<'a> {
+pub struct FieldView<'a> {
     /// All numbers, those of the field among them: borrowed from the engine, or computed for this view.
     pub values: Cow<'a, [f64]>,
     /// The first number.
@@ -15,7 +15,7 @@ pub struct View<'a> {
     pub row: usize,
 }
 
-impl View<'_> {
+impl FieldView<'_> {
     /// The number in column `i`, row `j`.
     ///
     /// # Panics

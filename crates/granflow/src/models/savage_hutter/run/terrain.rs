@@ -2,9 +2,9 @@
 
 use super::chute::step_size;
 use super::flowing::Flowing;
-use super::plane::Mountain;
+use super::super::TerrainDomain;
 use crate::StartError;
-use crate::results::Plane;
+use crate::model::Plane;
 use crate::run::{Run, Simulated};
 use granflow_case::RunPlan;
 use granflow_case::terrain::{From, Measured, Order, Plan, Release, Thickness};
@@ -45,8 +45,12 @@ pub(super) fn simulate(
     };
     let thickness = release.map(|cell, volume| volume * terrain.fit(bed.place(cell)).cosine());
     // The grounds hold the elevation from here on.
-    let under = Mountain::new(bed.with_values(Vec::new()), plan.material.density);
-    let plane = Plane::of(&grid, Arc::new(under), thickness);
+    let domain = TerrainDomain {
+        raster: Arc::new(bed.with_values(Vec::new())),
+        release: Arc::new(thickness),
+        density: plan.material.density,
+    };
+    let plane = Plane::of(&grid, Arc::new(domain));
     let (law, film) = (plan.material.law, plan.film);
     let scheme = match plan.scheme {
         Order::First => Balanced::first(law, film),

@@ -1,9 +1,9 @@
 //! An avalanche on a chute in the papers' scaling: from a checked case to a run.
 
 use super::flowing::Flowing;
-use super::plane::Chute as OnChute;
+use super::super::ChuteDomain;
 use crate::StartError;
-use crate::results::Plane;
+use crate::model::Plane;
 use crate::run::{Run, Simulated};
 use granflow_case::avalanche::SchemeName;
 use granflow_case::chute::Plan;
@@ -11,7 +11,7 @@ use granflow_case::{Axis, RunPlan, Side, Stepping};
 use granflow_engine::grid::Grid;
 use granflow_engine::kernels::Kernel;
 use granflow_engine::simulation::{Simulation, StepSize};
-use granflow_geo::release::Sparse;
+
 use granflow_model::savage_hutter::Flow;
 use granflow_model::savage_hutter::balanced::Balanced;
 use granflow_model::savage_hutter::friction::Coulomb;
@@ -48,8 +48,7 @@ where
 {
     let (grid, grounds, initial, film) = (grid::<D>(&plan), columns(&plan), plan.initial, plan.film);
     let columns = grid.cells[0];
-    let start = Sparse::of(initial.thickness.iter().copied());
-    let plane = Plane::of(&grid, Arc::new(OnChute), start);
+    let plane = Plane::of(&grid, Arc::new(ChuteDomain));
     // Both own what they read: it is given back once the simulation is made.
     let ground = move |index: [usize; D]| {
         let Chute { tilt, beta, cos, curvature } = grounds[index[0]];

@@ -1,10 +1,10 @@
 //! A growing sandpile: from a checked case to a run, and what is poured while it goes.
 
-use super::plane::Table;
+use super::super::TableDomain;
 use super::pouring::Pouring;
 use super::site::Site;
 use crate::StartError;
-use crate::results::Plane;
+use crate::model::Plane;
 use crate::run::{CellOf, Run, Simulated};
 use granflow_case::sandpile::{Pile, Plan, Poured, SchemeName, Sources, TablePlan};
 use granflow_case::{Axis, Grid, RunPlan, Stepping, Until};
@@ -96,7 +96,7 @@ impl<const D: usize> Sand<D> {
             if walls.contains(&true) { walls } else { Vec::new() }
         };
         let flat = self.plan.height.iter().all(|height| *height == 0.0);
-        let table = Table {
+        let table = TableDomain {
             x_node: nodes.x.clone(),
             y_node: nodes.y.clone().unwrap_or_default(),
             inside: (0..self.plan.rolling.len()).map(|cell| self.plan.inside(cell)).collect(),

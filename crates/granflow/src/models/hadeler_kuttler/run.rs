@@ -1,0 +1,6 @@
+//! From a case of a growing sandpile to its run.
+
+pub(crate) mod describe;
+mod pouring;
+pub mod site;
+pub(crate) mod start;

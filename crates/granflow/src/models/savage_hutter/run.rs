@@ -1,0 +1,7 @@
+//! From a case of an avalanche to its run.
+
+pub(crate) mod chute;
+pub(crate) mod describe;
+pub(crate) mod flowing;
+#[cfg(feature = "geo")]
+pub(crate) mod terrain;
