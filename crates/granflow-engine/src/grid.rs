@@ -106,3 +106,19 @@ impl Layout {
         if axis == 0 { 1 } else { self.stride }
     }
 }
+
+impl Grid<1> {
+    /// An interval cut into equal cells, open at both ends.
+    pub fn line([from, to]: [f64; 2], cells: usize) -> Grid<1> {
+        let size = [(to - from) / cells as f64];
+        Grid { cells: [cells], origin: [from], size, boundary: [[Boundary::Open; 2]] }
+    }
+}
+
+impl Grid<2> {
+    /// A rectangle \[from, to\] along x and y cut into equal cells, open on all sides.
+    pub fn rectangle(x: [f64; 2], y: [f64; 2], cells: [usize; 2]) -> Grid<2> {
+        let size = [(x[1] - x[0]) / cells[0] as f64, (y[1] - y[0]) / cells[1] as f64];
+        Grid { cells, origin: [x[0], y[0]], size, boundary: [[Boundary::Open; 2]; 2] }
+    }
+}

@@ -2,5 +2,6 @@
 
 pub(crate) mod describe;
 mod pouring;
+pub mod sandpile;
 pub mod site;
 pub(crate) mod start;

@@ -1,21 +1,24 @@
 //! A growing sandpile as a run shows it: the two layers, and sources that flow, switch and move.
 
 use super::start::Sand;
-use super::table::blank_part;
+use super::super::TableDomain;
+use crate::model::Domain;
 use crate::run::{CellOf, Field, Maps, Numbers, Physics, Record, Value};
 use granflow_engine::simulation::Simulation;
 use granflow_model::hadeler_kuttler::scheme::HadelerKuttler;
+use std::sync::Arc;
 
 /// A table with what is poured on it, and until when that flows as it does now.
 pub(crate) struct Pouring<const D: usize> {
     sand: Sand<D>,
+    table: Arc<dyn Domain>,
     scheme: &'static str,
     changes_at: f64,
 }
 
 impl<const D: usize> Pouring<D> {
-    pub fn new(sand: Sand<D>, scheme: &'static str) -> Self {
-        Pouring { sand, scheme, changes_at: f64::NEG_INFINITY }
+    pub fn new(sand: Sand<D>, table: Arc<dyn Domain>, scheme: &'static str) -> Self {
+        Pouring { sand, table, scheme, changes_at: f64::NEG_INFINITY }
     }
     /// The first time after `time` at which a source begins or ends.
     fn change_after(&self, time: f64) -> f64 {
@@ -64,7 +67,9 @@ impl<const D: usize> Physics<D> for Pouring<D> {
         true
     }
     fn blank(&self, field: usize, from: usize, values: &mut [f64]) {
-        self.sand.blank_part(field == 0, from, values);
+        let Some(table) = self.table.get::<TableDomain>() else { return };
+        let length = if field == 0 { table.nodes() } else { table.inside.len() };
+        table.blank_part(length, from, values);
     }
     fn is_steady(&self, simulation: &Simulation<D, HadelerKuttler>, rate: f64) -> bool {
         let time = simulation.time();

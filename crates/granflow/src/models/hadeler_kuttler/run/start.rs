@@ -6,9 +6,9 @@ use super::site::Site;
 use crate::StartError;
 use crate::model::Plane;
 use crate::run::{CellOf, Run, Simulated};
-use granflow_case::sandpile::{Pile, Plan, Poured, SchemeName, Sources, TablePlan};
-use granflow_case::{Axis, Grid, RunPlan, Stepping, Until};
-use granflow_engine::simulation::{Simulation, StepSize};
+use granflow_case::sandpile::{Pile, Plan, Poured, SchemeName, Sources as Written, TablePlan};
+use granflow_case::{Axis, Grid, Points, RunPlan, Stepping, Until};
+use granflow_engine::simulation::{BuildError, Simulation, StepSize};
 use granflow_model::hadeler_kuttler::direct::{Equilibrium, Unsteady};
 use granflow_model::hadeler_kuttler::scheme::{FIRST_ORDER, HadelerKuttler, SECOND_ORDER, Slopes};
 use granflow_model::scheme::Side;
@@ -36,21 +36,78 @@ fn on<const D: usize>(
     let sand = Sand::new(run, grid, pile)?;
     // At its equilibrium a pile is the first-order scheme's.
     let scheme = if sand.equilibrium.is_some() { FIRST_ORDER } else { scheme };
-    let simulation = sand.simulation(run, scheme)?;
-    let plane = sand.plane();
-    Ok(Box::new(Simulated::new(simulation, Pouring::new(sand, run.scheme), plane)))
+    let step = match run.stepping {
+        Stepping::Fixed(dt) => StepSize::Fixed(dt),
+        Stepping::Courant(courant) => StepSize::Courant(courant),
+    };
+    Ok(pour(sand, scheme, run.scheme, step)?)
+}
+
+/// The run of a table with what is poured on it, by a scheme under its name.
+pub(crate) fn pour<const D: usize>(
+    sand: Sand<D>,
+    scheme: HadelerKuttler,
+    name: &'static str,
+    step: StepSize,
+) -> Result<Box<dyn Run>, BuildError> {
+    let (simulation, plane) = (sand.simulation(scheme, step)?, sand.plane());
+    let table = plane.domain.clone();
+    Ok(Box::new(Simulated::new(simulation, Pouring::new(sand, table, name), plane)))
+}
+
+/// Sand that is poured on the cells of a table.
+pub trait Sources: Send {
+    /// The rate f of every cell at time t \[thickness per time\], x fastest; 0 off the table.
+    fn rate(&self, t: f64) -> Vec<f64>;
+    /// The times after 0 at which a source begins or ends, growing.
+    fn changes(&self) -> Vec<f64>;
+    /// Rates change at `time` or later, between the times of [`Sources::changes`].
+    fn is_moving(&self, time: f64) -> bool;
+    /// The rates of the sources that never end; `None` where one of them changes for ever.
+    fn lasting(&self) -> Option<Vec<f64>>;
+}
+
+impl Sources for Written {
+    fn rate(&self, t: f64) -> Vec<f64> {
+        Written::rate(self, t)
+    }
+    fn changes(&self) -> Vec<f64> {
+        Written::changes(self)
+    }
+    fn is_moving(&self, time: f64) -> bool {
+        Written::is_moving(self, time)
+    }
+    fn lasting(&self) -> Option<Vec<f64>> {
+        Written::lasting(self)
+    }
+}
+
+/// Where the cells of a table have their centres and their nodes; nothing along y in one dimension.
+pub(crate) struct Places {
+    /// Centres along x and y.
+    pub centres: [Vec<f64>; 2],
+    /// Nodes along x and y.
+    pub nodes: [Vec<f64>; 2],
+}
+
+impl Places {
+    fn of<const D: usize>(plan: &TablePlan<D>) -> Places {
+        let pair = |points: &Points| [points.x.clone(), points.y.clone().unwrap_or_default()];
+        Places { centres: pair(&plan.centres), nodes: pair(&plan.nodes) }
+    }
 }
 
 /// A table with what is poured on it.
-#[derive(Debug)]
-pub(super) struct Sand<const D: usize> {
-    /// The case's table in plain numbers.
-    plan: TablePlan<D>,
+pub(crate) struct Sand<const D: usize> {
     /// The table with sizes and heights.
-    site: Site<D>,
+    pub site: Site<D>,
+    /// Where it is.
+    pub places: Places,
+    /// Standing layer at the nodes, and rolling layer in the cells, at the start.
+    pub layers: [Vec<f64>; 2],
     /// What is poured, and when.
-    pub sources: Sources,
-    /// The equilibrium, where the case asks for it without stepping.
+    pub sources: Box<dyn Sources>,
+    /// The equilibrium, where it is asked for without stepping.
     pub equilibrium: Option<Equilibrium<D>>,
 }
 
@@ -59,8 +116,11 @@ impl<const D: usize> Sand<D> {
         let axes = [Some(&grid.x), grid.y.as_ref()];
         let size = std::array::from_fn(|k| axes[k].map_or(1.0, Axis::width));
         let origin = std::array::from_fn(|k| axes[k].map_or(0.0, |axis| axis.from));
-        let site = Site::new(plan.table.clone(), origin, size, plan.height.clone());
-        let mut sand = Sand { site, sources, equilibrium: None, plan };
+        let places = Places::of(&plan);
+        let TablePlan { table, height, standing, rolling, .. } = plan;
+        let site = Site::new(table, origin, size, height);
+        let (layers, sources) = ([standing, rolling], Box::new(sources));
+        let mut sand = Sand { site, places, layers, sources, equilibrium: None };
         if run.ends.until == Some(Until::Equilibrium) {
             sand.equilibrium = Some(sand.steady(run)?);
         }
@@ -84,44 +144,42 @@ impl<const D: usize> Sand<D> {
     }
 
     /// Where its cells and nodes are, for the files.
-    fn plane(&self) -> Plane {
-        let (cells, nodes) = (&self.plan.centres, &self.plan.nodes);
+    pub fn plane(&self) -> Plane {
+        let Places { centres: [x, y], nodes: [x_node, y_node] } = &self.places;
+        let (table, counts) = (&self.site.table, [x.len(), y.len().max(1)]);
         let walls = |axis: usize| {
-            let mut counts = cells.counts();
+            let mut counts = counts;
             counts[axis] += 1;
             let mut walls = vec![false; counts[0] * counts[1]];
-            for (edge, _) in self.plan.table.edges().filter(|(edge, wall)| *wall && edge.axis == axis) {
+            for (edge, _) in table.edges().filter(|(edge, wall)| *wall && edge.axis == axis) {
                 walls[edge.index.iter().rev().fold(0, |row, k| row * counts[0] + k)] = true;
             }
             if walls.contains(&true) { walls } else { Vec::new() }
         };
-        let flat = self.plan.height.iter().all(|height| *height == 0.0);
-        let table = TableDomain {
-            x_node: nodes.x.clone(),
-            y_node: nodes.y.clone().unwrap_or_default(),
-            inside: (0..self.plan.rolling.len()).map(|cell| self.plan.inside(cell)).collect(),
-            height: if flat { Vec::new() } else { self.plan.height.clone() },
+        let index = |cell: usize| std::array::from_fn(|k| if k == 0 { cell % x.len() } else { cell / x.len() });
+        let flat = self.site.bed.iter().all(|height| *height == 0.0);
+        TableDomain {
+            x_node: x_node.clone(),
+            y_node: y_node.clone(),
+            inside: (0..counts[0] * counts[1]).map(|cell| table.inside(index(cell))).collect(),
+            height: if flat { Vec::new() } else { self.site.bed.clone() },
             wall_x: walls(0),
             wall_y: if D > 1 { walls(1) } else { Vec::new() },
-        };
-        Plane::table(cells.x.clone(), cells.y.clone().unwrap_or_default(), table)
+        }
+        .plane(x.clone(), y.clone())
     }
 
-    /// The simulation that the case asks for; at its equilibrium if that is known.
-    fn simulation(
+    /// The simulation from the layers at the start, or at the equilibrium if that is known.
+    pub fn simulation(
         &self,
-        run: &RunPlan,
         scheme: HadelerKuttler,
-    ) -> Result<Simulation<D, HadelerKuttler>, StartError> {
+        step: StepSize,
+    ) -> Result<Simulation<D, HadelerKuttler>, BuildError> {
         let (u, v, time) = match &self.equilibrium {
             Some(found) => (&found.u, &found.v, f64::INFINITY),
-            None => (&self.plan.standing, &self.plan.rolling, 0.0),
+            None => (&self.layers[0], &self.layers[1], 0.0),
         };
-        let step = match run.stepping {
-            Stepping::Fixed(dt) => StepSize::Fixed(dt),
-            Stepping::Courant(courant) => StepSize::Courant(courant),
-        };
-        Ok(self.site.simulation(scheme, step, &self.rates(time), (u, v))?)
+        self.site.simulation(scheme, step, &self.rates(time), (u, v))
     }
 
     /// Rates of the sources at a time, in the cells; at infinity those that last.
