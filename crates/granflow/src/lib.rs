@@ -58,6 +58,8 @@ pub use granflow_engine::{grid, kernels, simulation};
 pub use granflow_geo::{raster, release, terrain};
 pub use granflow_model::{hadeler_kuttler, limiter, real, savage_hutter, scheme, time};
 
+pub mod model;
+pub mod models;
 pub mod output;
 
 pub mod results;

@@ -10,9 +10,10 @@ use crate::case::{self, Case, CaseError, Model, SchemeName, Stepping};
 use crate::grid::Grid;
 use crate::hadeler_kuttler::scheme::HadelerKuttler;
 use crate::kernels::Kernel;
+use crate::model::Plane;
+use crate::models::savage_hutter::ChuteDomain;
 use crate::raster::RasterError;
-use crate::release::{ReleaseError, Sparse};
-use crate::results::{Plane, Under};
+use crate::release::ReleaseError;
 use crate::savage_hutter::Flow;
 use crate::savage_hutter::balanced::Balanced;
 use crate::savage_hutter::friction::{Cohesion, Coulomb, Law, SamosAt, Voellmy};
@@ -23,6 +24,7 @@ use crate::savage_hutter::kinetic::{
 use crate::scheme::Boundary;
 use crate::simulation::{Simulation, StepSize};
 use crate::time::{EULER, SSP_RK2};
+use std::sync::Arc;
 
 /// Why a case could not be set up.
 #[derive(Debug, thiserror::Error)]
@@ -156,7 +158,7 @@ impl Scene {
             }),
         };
         let number = |index: [usize; D]| if D > 1 { index[D - 1] * cells[0] + index[0] } else { index[0] };
-        let plane = Plane::of(&grid, Under::Chute, Sparse::of(initial.thickness.iter().copied()));
+        let plane = Plane::of(&grid, Arc::new(ChuteDomain));
         // Both own what they read: it is given back once the simulation is made.
         let ground = move |index: [usize; D]| {
             let Chute { tilt, beta, cos, curvature } = grounds[index[0]];

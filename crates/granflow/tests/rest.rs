@@ -441,7 +441,8 @@ fn the_static_bound_is_a_disc_in_the_metric() {
         for (slope, held) in [(MU * (1.0 - 1e-9), true), (MU * BEYOND, false)] {
             let slope = [slope * cos, slope * sin];
             let ground = ground(inclined([0.5; 2], slope));
-            let pull = ground.driving_force(slope.map(|s| -GRAVITY * s), slope.map(|s| GRAVITY * s), [1.0; 2]);
+            let pull =
+                ground.driving_force(slope.map(|s| -GRAVITY * s), slope.map(|s| GRAVITY * s), [1.0; 2]);
             let size = ground.square(pull).sqrt();
             let bound = MU * ground.weight_at_rest();
             assert_eq!(size <= bound, held, "{angle}: {size} against {bound}");

@@ -3,8 +3,9 @@
 use crate::hadeler_kuttler::scheme::HadelerKuttler;
 use crate::hadeler_kuttler::{Ground, Pile};
 use crate::kernels::Kernel;
+use crate::model::Plane;
+use crate::models::hadeler_kuttler::TableDomain;
 use crate::output::summary::Summary;
-use crate::results::Plane;
 use crate::savage_hutter::Flow;
 use crate::savage_hutter::balanced::Balanced;
 use crate::savage_hutter::friction::Law;
@@ -15,7 +16,7 @@ use crate::setup::Sand;
 use crate::simulation::Simulation;
 
 /// Maps by name, x fastest.
-pub type Maps = Vec<(&'static str, Vec<f64>)>;
+pub type Maps = crate::model::Maps;
 
 /// A model as a run sees it.
 pub trait Model<const D: usize>: Kernel<D> + Sized {
@@ -83,7 +84,7 @@ impl<const D: usize> Model<D> for HadelerKuttler {
             0 => simulation.fill(nodes, from, values, |cell| cell.state.u),
             _ => simulation.fill(nodes - 1, from, values, |cell| cell.state.v),
         }
-        if let Some(table) = plane.as_table() {
+        if let Some(table) = plane.domain.get::<TableDomain>() {
             let length = if field == 0 { table.nodes() } else { table.inside.len() };
             table.blank_part(length, from, values);
         }

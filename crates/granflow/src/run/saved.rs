@@ -8,7 +8,7 @@ use crate::output;
 use crate::output::checkpoint::{Checkpoint, Numbers, case_hash};
 use crate::output::frames::Frames;
 use crate::output::ledger::Ledger;
-use crate::results::Plane;
+use crate::results::{Plane, check_kinds};
 use crate::setup::Sand;
 use crate::simulation::{CLOCK, Simulation};
 use granflow_engine::Field;
@@ -26,6 +26,7 @@ impl<'s, const D: usize, S: Model<D>> Run<'_, 's, D, S> {
         if S::PEAKS {
             simulation.keep_maps();
         }
+        check_kinds(&work.case.files(), &plane)?;
         let directory = &work.options.directory;
         let (frame_file, ledger_file) = (frames_in(directory), directory.join("mass.csv"));
         let initial = simulation.totals().volume;

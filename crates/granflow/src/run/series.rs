@@ -3,6 +3,7 @@
 use super::model::Model;
 use super::{CHECKPOINT, JOIN, LINES, Run, RunError, relative};
 use crate::case;
+use crate::model::Units;
 use crate::output::ledger::{Entry, sum};
 use crate::output::summary::StopReason;
 use std::time::Instant;
@@ -14,8 +15,10 @@ impl<const D: usize, S: Model<D>> Run<'_, '_, D, S> {
             case::Frames::Every(interval) => Some(interval),
             case::Frames::Steps(_) => None,
             // Nobody knows when a run that ends by itself will end.
-            case::Frames::Ends if self.plane.is_terrain() => Some(10.0),
-            case::Frames::Ends => Some(1.0),
+            case::Frames::Ends => Some(match self.plane.domain.units() {
+                Units::Si => 10.0,
+                Units::Scaled => 1.0,
+            }),
         }
     }
 

@@ -3,9 +3,10 @@
 use super::{SetupError, Visit, law, step_size};
 use crate::case::{self, Case, SchemeName};
 use crate::grid::Grid;
+use crate::model::Plane;
+use crate::models::savage_hutter::TerrainDomain;
 use crate::raster::{Crs, Raster};
 use crate::release::{self, Sparse};
-use crate::results::{Plane, Under};
 use crate::savage_hutter::Flow;
 use crate::savage_hutter::balanced::Balanced;
 use crate::savage_hutter::ground;
@@ -56,8 +57,12 @@ impl Mountain {
         };
         let thickness = release.map(|cell, volume| volume * terrain.fit(bed.place(cell)).cosine());
         // The grounds hold the elevation from here on.
-        let under = Under::Mountain(Arc::new(bed.with_values(Vec::new())));
-        let plane = Plane::of(&grid, under, thickness);
+        let domain = TerrainDomain {
+            raster: Arc::new(bed.with_values(Vec::new())),
+            release: Arc::new(thickness),
+            density: case.material().density(),
+        };
+        let plane = Plane::of(&grid, Arc::new(domain));
         let (law, film) = (law(case), case.scheme.film());
         let (scheme, stages) = match case.scheme.name {
             SchemeName::Balanced2 => (Balanced::second(law, film), SSP_RK2),

@@ -4,7 +4,8 @@ use super::SetupError;
 use crate::case::{self, Case, CaseError, Method, SchemeName, Sources, TablePlan};
 use crate::hadeler_kuttler::direct::{Equilibrium, Unsteady};
 use crate::hadeler_kuttler::scheme::{FIRST_ORDER, HadelerKuttler, SECOND_ORDER, Slopes};
-use crate::results::{self, Plane};
+use crate::model::Plane;
+use crate::models::hadeler_kuttler::TableDomain;
 use crate::scheme::Side;
 use crate::simulation::{Simulation, StepSize};
 use crate::site::Site;
@@ -69,18 +70,15 @@ impl<const D: usize> Sand<D> {
             if walls.contains(&true) { walls } else { Vec::new() }
         };
         let flat = self.plan.height.iter().all(|height| *height == 0.0);
-        Plane::table(
-            cells.x.clone(),
-            cells.y.clone().unwrap_or_default(),
-            results::Table {
-                x_node: nodes.x.clone(),
-                y_node: nodes.y.clone().unwrap_or_default(),
-                inside: (0..self.plan.rolling.len()).map(|cell| self.plan.inside(cell)).collect(),
-                height: if flat { Vec::new() } else { self.plan.height.clone() },
-                wall_x: walls(0),
-                wall_y: if D > 1 { walls(1) } else { Vec::new() },
-            },
-        )
+        let table = TableDomain {
+            x_node: nodes.x.clone(),
+            y_node: nodes.y.clone().unwrap_or_default(),
+            inside: (0..self.plan.rolling.len()).map(|cell| self.plan.inside(cell)).collect(),
+            height: if flat { Vec::new() } else { self.plan.height.clone() },
+            wall_x: walls(0),
+            wall_y: if D > 1 { walls(1) } else { Vec::new() },
+        };
+        table.plane(cells.x.clone(), cells.y.clone().unwrap_or_default())
     }
 
     /// The simulation that the case asks for; at its equilibrium if that is known.
