@@ -6,7 +6,7 @@ use std::fs::{self, OpenOptions};
 use std::io::Write;
 use std::path::{Path, PathBuf};
 
-/// The columns of the file, in order; `mass_out_nodata` is `mass_out_hole` where a sandpile grows on a table.
+/// The columns of the file, in order; the model names the five after `mass_out_`.
 pub const COLUMNS: [&str; 15] = [
     "time",
     "step",
@@ -28,7 +28,7 @@ pub const COLUMNS: [&str; 15] = [
 /// The columns `mass_out_left`, ... among [`COLUMNS`].
 const OUTLETS: std::ops::Range<usize> = 5..10;
 
-/// The header with these names for what lies behind the five exits.
+/// The header with these names of the five outlets.
 fn header(exits: [&str; 5]) -> String {
     let named = exits.map(|exit| format!("mass_out_{exit}"));
     let named = named.iter().map(String::as_str);
@@ -66,17 +66,17 @@ pub struct Entry {
     pub mass: f64,
     /// Mass that was released or poured on.
     pub mass_in: f64,
-    /// What left over the sides and inside them: left, right, bottom, top, and into nodata or the holes of a table.
+    /// Mass that left over the sides and inside them: left, right, bottom, top, and inside the grid.
     pub out: [f64; 5],
     /// (mass - `mass_in` + mass out - mass at the start) / (mass at the start + `mass_in`).
     pub mass_error: f64,
-    /// Cells that hold mass above a film; on a table those with sand.
+    /// Cells that hold mass above a film.
     pub wet_cells: u64,
-    /// Cells that move; on a table those with a rolling layer.
+    /// Cells that move.
     pub moving_cells: u64,
-    /// Largest speed; NaN on a table.
+    /// Largest speed; NaN where the model has none.
     pub max_speed: f64,
-    /// Kinetic energy per density; NaN on a table.
+    /// Kinetic energy per density; NaN where the model has none.
     pub kinetic_energy: f64,
 }
 
@@ -287,7 +287,7 @@ mod tests {
     }
 
     #[test]
-    fn the_books_of_a_table_name_its_hole_and_leave_out_the_speed() {
+    fn the_outlets_are_named_and_what_does_not_apply_is_left_out() {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("mass.csv");
         let mut ledger = Ledger::create(&path, ["left", "right", "bottom", "top", "hole"]).unwrap();

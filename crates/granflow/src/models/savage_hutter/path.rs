@@ -1,11 +1,10 @@
 //! The path of a mass: the line along which most of it went, from the highest release to the farthest cell reached.
 
-use super::story::Story;
+use super::terrain::{REACHED, TerrainDomain};
+use crate::model::View;
 use std::cmp::Reverse;
 use std::collections::BinaryHeap;
 
-/// A cell counts as reached above this peak thickness \[m\].
-pub(super) const REACHED: f64 = 0.1;
 /// A cell without flow costs as much as one with this share of the greatest.
 const FLOOR: f64 = 0.01;
 /// The staircase of cells is straightened by the mean over so many neighbours on each side.
@@ -25,12 +24,12 @@ pub(super) struct PathLine {
 /// Among all lines from the highest released cell to the reached cell farthest from it, that of the smallest
 /// integral of 1/(q + q_max/100) ds, with q the greatest thickness times the greatest speed of a cell (Dijkstra over
 /// eight neighbours): it follows the core of the flow.
-pub(super) fn path(story: &Story) -> Option<PathLine> {
-    let bed = story.plane.bed()?;
-    let (thickness, speed) = (story.map("peak_thickness")?, story.map("peak_speed")?);
-    let (x, y) = (&story.plane.x, &story.plane.y);
+pub(super) fn path(view: &View, terrain: &TerrainDomain) -> Option<PathLine> {
+    let bed = &terrain.raster.values;
+    let (thickness, speed) = (view.map("peak_thickness")?, view.map("peak_speed")?);
+    let (x, y) = (&view.x, &view.y);
     let columns = x.len();
-    let release = &story.plane.release;
+    let release = &terrain.release;
     let least = REACHED.min(0.5 * release.most());
     let released = release.iter().filter(|(_, thickness)| *thickness > least).map(|(cell, _)| cell);
     let top = released.max_by(|&a, &b| bed[a].total_cmp(&bed[b]))?;

@@ -1,11 +1,9 @@
-//! The figures of a sandpile on a table: the pile, what rolls on it, sections, the books.
+//! The figures of a sandpile on a table: the pile, what rolls on it, sections, the ledger; the animation.
 
-use super::drawing::Drawing;
-use super::history_figure::books;
-use super::mountain_figures::top;
-use super::plane::Table;
-use super::profiles::{self, Line};
-use super::story::Story;
+use super::history::history;
+use super::table::TableDomain;
+use crate::model::{Drawing, Instants, Line, Scene, View, colour_limit, profiles};
+use crate::output;
 use crate::output::figures::{
     Axis, Colours, Curve, Figure, FigureError, Frame, HeatMap, History, HistoryPanel, Levels, Outline, Paint,
     Picture, Style, Surface, round_length, short,
@@ -16,26 +14,26 @@ const ROLLING: &str = "rolling layer v";
 const WALL: [u8; 3] = [88, 92, 104];
 
 /// Name of the height that is drawn: u on a flat table.
-fn height(table: &Table) -> &'static str {
+fn height(table: &TableDomain) -> &'static str {
     if table.height.is_empty() { STANDING } else { "surface u + b" }
 }
 
 /// The ends of axes and colours: lowest and highest surface, largest rolling layer.
 #[derive(Debug, Clone, Copy, Default)]
-pub(super) struct Ranges {
+struct Ranges {
     height: [f64; 2],
     rolling: f64,
 }
 
 impl Ranges {
     /// The same, wide enough for these standing and rolling layers too.
-    pub fn widen(&mut self, table: &Table, (standing, rolling): (&[f64], &[f64])) {
+    fn widen(&mut self, table: &TableDomain, (standing, rolling): (&[f64], &[f64])) {
         let surface = table.surface(standing);
         let all = || surface.iter().chain(&table.height).copied();
         self.height = [all().fold(self.height[0], f64::min), all().fold(self.height[1], f64::max)];
         let rolls = rolling.iter().copied().filter(|&v| v > 0.0);
         self.rolling =
-            if rolls.clone().next().is_some() { self.rolling.max(top(rolls)) } else { self.rolling };
+            if rolls.clone().next().is_some() { self.rolling.max(colour_limit(rolls)) } else { self.rolling };
     }
 
     /// The axis of the height.
@@ -59,9 +57,9 @@ fn roomy(axis: Axis<'static>) -> Axis<'static> {
 }
 
 /// The pile in perspective, the rolling layer as colour on it.
-pub(super) fn pile(
-    story: &Story,
-    table: &Table,
+fn pile(
+    view: &View,
+    table: &TableDomain,
     subtitle: &str,
     (standing, rolling): (&[f64], &[f64]),
     ranges: Ranges,
@@ -74,7 +72,7 @@ pub(super) fn pile(
     let long = side(x).max(side(y));
     let sides = [side(x) / long, side(y) / long];
     Surface {
-        title: &story.title,
+        title: &view.title,
         subtitle,
         x: Axis::new("x", ""),
         y: Axis::new("y", ""),
@@ -94,9 +92,9 @@ pub(super) fn pile(
 }
 
 /// The figures of a pile on a plane table.
-pub(super) fn plane<'a>(story: &'a Story, table: &'a Table) -> Vec<Drawing<'a>> {
+pub(super) fn plane<'a>(view: &'a View, table: &'a TableDomain) -> Vec<Drawing<'a>> {
     let mut drawings = Vec::new();
-    let last = (story.series("standing_layer").last(), story.series("rolling_layer").last());
+    let last = (view.series("standing_layer").last(), view.series("rolling_layer").last());
     if let (Some(standing), Some(rolling)) = last {
         let mut ranges = Ranges::default();
         ranges.widen(table, (standing, rolling));
@@ -108,27 +106,27 @@ pub(super) fn plane<'a>(story: &'a Story, table: &'a Table) -> Vec<Drawing<'a>> 
         };
         let caption = format!("The pile at the end, coloured by the rolling layer{clipped}.");
         drawings.push(Drawing::new("pile", caption, move || {
-            pile(story, table, &story.subtitle, (standing, rolling), ranges)
+            pile(view, table, &view.subtitle, (standing, rolling), ranges)
         }));
         let surface = table.surface(standing);
         let [low, high] = ranges.height;
         let interval = round_length(if low < high { (high - low) / 8.0 } else { 1.0 });
         let lines = format!("lines: {} every {}", height(table), short(interval));
         let caption = format!("The rolling layer at the end; {lines}, thick grey: walls{clipped}.");
-        let subtitle = format!("{}; {lines}", story.subtitle);
+        let subtitle = format!("{}; {lines}", view.subtitle);
         drawings.push(Drawing::new("rolling_layer", caption, move || {
-            above(story, table, &subtitle, (&surface, rolling), ranges, interval)
+            above(view, table, &subtitle, (&surface, rolling), ranges, interval)
         }));
-        drawings.push(sections(story, table, (standing, rolling)));
+        drawings.push(sections(view, table, (standing, rolling)));
     }
-    drawings.extend(books(story));
+    drawings.extend(history(view));
     drawings
 }
 
 /// The rolling layer from above, with lines of equal height of the pile, the walls, and the table's open edge.
 fn above(
-    story: &Story,
-    table: &Table,
+    view: &View,
+    table: &TableDomain,
     subtitle: &str,
     (surface, rolling): (&[f64], &[f64]),
     ranges: Ranges,
@@ -147,13 +145,13 @@ fn above(
         })
         .collect();
     HeatMap {
-        title: &story.title,
+        title: &view.title,
         subtitle,
         frame: Frame::Plane,
         x: Axis::new("x", ""),
         y: Axis::new("y", ""),
-        xs: &story.plane.x,
-        ys: &story.plane.y,
+        xs: &view.x,
+        ys: &view.y,
         values: rolling,
         quantity: ranges.rolling(),
         colours: Colours::Thickness,
@@ -172,11 +170,11 @@ fn middle(field: &[f64], columns: usize) -> Vec<f64> {
 
 /// u and v at the end along x through the middle and, where cells along x and y are as many, from corner to corner.
 fn sections<'a>(
-    story: &'a Story,
-    table: &'a Table,
+    view: &'a View,
+    table: &'a TableDomain,
     (standing, rolling): (&'a [f64], &'a [f64]),
 ) -> Drawing<'a> {
-    let square = story.plane.x.len() == story.plane.y.len();
+    let square = view.x.len() == view.y.len();
     let and = if square { ", and along the diagonal, against x" } else { "" };
     let caption = format!("Pile and rolling layer at the end along x through the middle of the table{and}.");
     Drawing::new("sections", caption, move || {
@@ -185,7 +183,7 @@ fn sections<'a>(
         let panel = |x: &'a [f64], field: &[f64]| {
             (x, middle(field, x.len()), if square { across(field, x.len()) } else { Vec::new() })
         };
-        let parts = [panel(&table.x_node, &surface), panel(&story.plane.x, rolling)];
+        let parts = [panel(&table.x_node, &surface), panel(&view.x, rolling)];
         let named =
             if square { ["along x, y in the middle", "along the diagonal, against x"] } else { [""; 2] };
         let curves: [Vec<Curve>; 2] = std::array::from_fn(|k| {
@@ -200,8 +198,8 @@ fn sections<'a>(
         });
         let [above, below] = [height(table), ROLLING].map(|label| Axis::new(label, ""));
         History {
-            title: &story.title,
-            subtitle: &story.subtitle,
+            title: &view.title,
+            subtitle: &view.subtitle,
             time: Axis::new("x", ""),
             panels: &[
                 HistoryPanel { y: above, curves: &curves[0] },
@@ -213,28 +211,34 @@ fn sections<'a>(
 }
 
 /// The figures of a pile on a line.
-pub(super) fn line<'a>(story: &'a Story, table: &'a Table) -> Vec<Drawing<'a>> {
-    let standing = story.series("standing_layer").iter().map(|u| table.surface(u)).collect();
+pub(super) fn line<'a>(view: &'a View, table: &'a TableDomain) -> Vec<Drawing<'a>> {
+    let standing = view.series("standing_layer").iter().map(|u| table.surface(u)).collect();
     let walls = table.x_node.iter().zip(&table.wall_x).filter(|(_, wall)| **wall).map(|(x, _)| *x).collect();
     let x = &table.x_node;
     let ends = x.first().zip(x.last()).map(|(&first, &last)| [first, last]);
-    let pile = Line { x, series: standing, filled: true, ground: &table.height, walls, ends };
-    let rolling = story.series("rolling_layer").to_vec();
-    let rolling =
-        Line { x: &story.plane.x, series: rolling, filled: true, ground: &[], walls: Vec::new(), ends };
+    let pile = Line {
+        x,
+        series: standing,
+        filled: true,
+        ground: (!table.height.is_empty()).then_some(("table", &table.height)),
+        walls,
+        ends,
+    };
+    let rolling = view.series("rolling_layer").to_vec();
+    let rolling = Line { x: &view.x, series: rolling, filled: true, ends, ..Line::default() };
     let when = "at the start, at two instants between, and at the end";
     let mut drawings = vec![
-        profiles::drawing(story, ("pile", &format!("The pile {when}.")), height(table), pile),
-        profiles::drawing(story, ("rolling_layer", &format!("The rolling layer {when}.")), ROLLING, rolling),
+        profiles(view, ("pile", &format!("The pile {when}.")), height(table), pile),
+        profiles(view, ("rolling_layer", &format!("The rolling layer {when}.")), ROLLING, rolling),
     ];
-    drawings.extend(books(story));
+    drawings.extend(history(view));
     drawings
 }
 
 /// Pile and rolling layer on a line at one instant, on axes that hold for all.
-pub(super) fn instant(
-    story: &Story,
-    table: &Table,
+fn instant(
+    view: &View,
+    table: &TableDomain,
     subtitle: &str,
     (standing, rolling): (&[f64], &[f64]),
     ranges: Ranges,
@@ -247,13 +251,46 @@ pub(super) fn instant(
         let style = Style::Dashed;
         pile.push(Curve { name: "table", x, y: &table.height, style, colour: Some([110, 110, 110]) });
     }
-    let rolls = [Curve { x: &story.plane.x, y: rolling, colour: Some([213, 94, 0]), ..Default::default() }];
+    let rolls = [Curve { x: &view.x, y: rolling, colour: Some([213, 94, 0]), ..Default::default() }];
     let (above, below) = (roomy(ranges.height(height(table))), roomy(ranges.rolling()));
     History {
-        title: &story.title,
+        title: &view.title,
         subtitle,
         time: Axis::new("x", ""),
         panels: &[HistoryPanel { y: above, curves: &pile }, HistoryPanel { y: below, curves: &rolls }],
     }
     .draw()
+}
+
+/// The pile over time.
+pub(super) fn scene<'a>(
+    view: &'a View<'a>,
+    table: &'a TableDomain,
+    instants: &mut Instants<'_>,
+) -> Result<Box<dyn Scene + 'a>, output::Error> {
+    let mut ranges = Ranges::default();
+    for fields in instants {
+        ranges.widen(table, pair(&fields?));
+    }
+    Ok(Box::new(TableScene { view, table, ranges }))
+}
+
+struct TableScene<'a> {
+    view: &'a View<'a>,
+    table: &'a TableDomain,
+    ranges: Ranges,
+}
+
+impl Scene for TableScene<'_> {
+    fn draw(&self, time: f64, fields: &[Vec<f64>]) -> Result<Picture, FigureError> {
+        let subtitle = format!("t = {} {}", short(time), self.view.unit("s"));
+        let draw = if self.view.dimensions() == 1 { instant } else { pile };
+        draw(self.view, self.table, &subtitle, pair(fields), self.ranges)
+    }
+}
+
+/// Standing and rolling layer of a frame.
+fn pair(fields: &[Vec<f64>]) -> (&[f64], &[f64]) {
+    let field = |k: usize| fields.get(k).map_or(&[][..], Vec::as_slice);
+    (field(0), field(1))
 }

@@ -1,9 +1,9 @@
-//! The figures of a run on a chute: profiles and space-time in one dimension, the plane in two.
+//! The figures of a run on a chute: profiles and space-time in one dimension, the plane in two; the animation.
 
-use super::drawing::Drawing;
-use super::profiles::{self, Line};
-use super::story::Story;
-use crate::output::figures::{Axis, Colours, Figure, Frame, HeatMap, Surface, short};
+use crate::model::{Drawing, Line, PILE, Scene, View, history, profiles};
+use crate::output::figures::{
+    Axis, Colours, Curve, Figure, FigureError, Fill, Frame, HeatMap, Picture, Profiles, Style, Surface, short,
+};
 
 /// Shown part of a plane: cells whose peak thickness passes this share of the largest.
 const FOOTPRINT: f64 = 0.01;
@@ -11,24 +11,24 @@ const FOOTPRINT: f64 = 0.01;
 const MARGIN: f64 = 0.1;
 
 /// Profiles and space-time of a one-dimensional run.
-pub(super) fn line<'a>(story: &'a Story<'a>) -> Vec<Drawing<'a>> {
-    let x = &story.plane.x;
-    let (thickness, velocity) = (story.series("thickness"), story.series("velocity_x"));
+pub(super) fn line<'a>(view: &'a View<'a>) -> Vec<Drawing<'a>> {
+    let x = &view.x;
+    let (thickness, velocity) = (view.series("thickness"), view.series("velocity_x"));
     let profile = |name, caption: &str, label, series: &[Vec<f64>], filled: bool| {
-        let line = Line { x, series: series.to_vec(), filled, ground: &[], walls: Vec::new(), ends: None };
-        profiles::drawing(story, (name, caption), label, line)
+        let line = Line { x, series: series.to_vec(), filled, ..Line::default() };
+        profiles(view, (name, caption), label, line)
     };
     let above = |name, caption: &str, label, series: &'_ [Vec<f64>], colours| {
         let values: Vec<f64> = series.concat();
         Drawing::new(name, caption, move || {
             HeatMap {
-                title: &story.title,
-                subtitle: &story.subtitle,
+                title: &view.title,
+                subtitle: &view.subtitle,
                 frame: Frame::SpaceTime,
                 x: Axis::new("x", ""),
                 y: Axis::new("time t", ""),
                 xs: x,
-                ys: &story.times,
+                ys: &view.times,
                 values: &values,
                 quantity: Axis::new(label, ""),
                 colours,
@@ -53,36 +53,36 @@ pub(super) fn line<'a>(story: &'a Story<'a>) -> Vec<Drawing<'a>> {
         above("space_time_velocity", "Velocity over space and time.", u, velocity, colours),
         Drawing::new("surface", "Thickness over space and time in perspective.", move || {
             Surface {
-                title: &story.title,
-                subtitle: &story.subtitle,
+                title: &view.title,
+                subtitle: &view.subtitle,
                 x: Axis::new("x", ""),
                 y: Axis::new("time t", ""),
                 z: Axis::new(h, ""),
                 xs: x,
-                ys: &story.times,
+                ys: &view.times,
                 values: &thickness.concat(),
                 ..Default::default()
             }
             .draw()
         }),
     ];
-    drawings.extend(super::history_figure::drawing(story));
+    drawings.extend(history(view));
     drawings
 }
 
 /// The part of a plane that the mass ever covered, with a margin.
 #[derive(Debug)]
-pub(super) struct Window {
-    pub x: Vec<f64>,
-    pub y: Vec<f64>,
+struct Window {
+    x: Vec<f64>,
+    y: Vec<f64>,
     low: [usize; 2],
     columns: usize,
 }
 
 impl Window {
     /// The window around the cells of `map` above [`FOOTPRINT`].
-    pub fn around(story: &Story, map: &[f64]) -> Window {
-        let (x, y) = (&story.plane.x, &story.plane.y);
+    fn around(view: &View, map: &[f64]) -> Window {
+        let (x, y) = (&view.x, &view.y);
         let limit = FOOTPRINT * map.iter().fold(0.0_f64, |most, v| most.max(*v));
         let inside: Vec<usize> = (0..map.len()).filter(|&k| map[k] > limit).collect();
         let range = |place: &dyn Fn(usize) -> usize, count: usize| {
@@ -101,7 +101,7 @@ impl Window {
         }
     }
     /// The values of a map in the window.
-    pub fn cut(&self, map: &[f64]) -> Vec<f64> {
+    fn cut(&self, map: &[f64]) -> Vec<f64> {
         let row = |j: usize| {
             let start = (self.low[1] + j) * self.columns + self.low[0];
             &map[start..start + self.x.len()]
@@ -111,17 +111,17 @@ impl Window {
 }
 
 /// The maps of a run on a plane.
-pub(super) fn plane<'a>(story: &'a Story<'a>) -> Vec<Drawing<'a>> {
-    let thickness = story.series("thickness");
-    let footprint = story.map("peak_thickness").or(thickness.first().map(Vec::as_slice)).unwrap_or(&[]);
+pub(super) fn plane<'a>(view: &'a View<'a>) -> Vec<Drawing<'a>> {
+    let thickness = view.series("thickness");
+    let footprint = view.map("peak_thickness").or(thickness.first().map(Vec::as_slice)).unwrap_or(&[]);
     let mut drawings = Vec::new();
     if footprint.is_empty() {
         return drawings;
     }
-    let window = std::sync::Arc::new(Window::around(story, footprint));
+    let window = std::sync::Arc::new(Window::around(view, footprint));
     let ends = [
-        ("thickness_start", thickness.first(), story.times.first()),
-        ("thickness_end", thickness.last(), story.times.last()),
+        ("thickness_start", thickness.first(), view.times.first()),
+        ("thickness_end", thickness.last(), view.times.last()),
     ];
     let mut maps: Vec<(&'static str, &str, String, &[f64])> = Vec::new();
     for (name, field, time) in ends {
@@ -130,15 +130,17 @@ pub(super) fn plane<'a>(story: &'a Story<'a>) -> Vec<Drawing<'a>> {
         }
     }
     let peaks = [("peak_thickness", "greatest thickness"), ("peak_speed", "greatest speed")];
-    maps.extend(peaks.iter().filter_map(|(name, label)| {
-        Some((*name, *label, format!("{label} over the run"), story.map(name)?))
-    }));
+    maps.extend(
+        peaks.iter().filter_map(|(name, label)| {
+            Some((*name, *label, format!("{label} over the run"), view.map(name)?))
+        }),
+    );
     for (name, label, what, map) in maps {
         let window = window.clone();
-        let subtitle = format!("{what}; {}", story.subtitle);
+        let subtitle = format!("{what}; {}", view.subtitle);
         drawings.push(Drawing::new(name, format!("Map of the {what}."), move || {
             HeatMap {
-                title: &story.title,
+                title: &view.title,
                 subtitle: &subtitle,
                 frame: Frame::Plane,
                 x: Axis::new("x", ""),
@@ -152,6 +154,60 @@ pub(super) fn plane<'a>(story: &'a Story<'a>) -> Vec<Drawing<'a>> {
             .draw()
         }));
     }
-    drawings.extend(super::history_figure::drawing(story));
+    drawings.extend(history(view));
     drawings
+}
+
+/// The thickness on a chute over time.
+pub(super) fn scene<'a>(view: &'a View<'a>) -> Box<dyn Scene + 'a> {
+    let (peak, thickness) = (view.map("peak_thickness"), view.series("thickness"));
+    let largest = match peak {
+        Some(peak) => peak.iter().copied().fold(0.0, f64::max),
+        None => thickness.iter().flatten().copied().fold(0.0, f64::max),
+    };
+    let footprint = peak.or(thickness.first().map(Vec::as_slice)).unwrap_or(&[]);
+    let window = (view.dimensions() > 1).then(|| Window::around(view, footprint));
+    Box::new(ChuteScene { view, window, top: if largest > 0.0 { largest } else { 1.0 } })
+}
+
+struct ChuteScene<'a> {
+    view: &'a View<'a>,
+    /// The part that is shown of a plane.
+    window: Option<Window>,
+    /// Greatest thickness that the colours or the axis tell apart.
+    top: f64,
+}
+
+impl Scene for ChuteScene<'_> {
+    fn draw(&self, time: f64, fields: &[Vec<f64>]) -> Result<Picture, FigureError> {
+        let view = self.view;
+        let subtitle = format!("t = {} {}", short(time), view.unit("s"));
+        let field: &[f64] = fields.first().map_or(&[], Vec::as_slice);
+        let x = Axis::new("x", "");
+        if let Some(window) = &self.window {
+            return HeatMap {
+                title: &view.title,
+                subtitle: &subtitle,
+                x,
+                y: Axis::new("y", ""),
+                xs: &window.x,
+                ys: &window.y,
+                values: &window.cut(field),
+                quantity: Axis::new("thickness h", view.unit("m")).over(0.0, self.top),
+                ..Default::default()
+            }
+            .draw();
+        }
+        let xs = &view.x;
+        Profiles {
+            title: &view.title,
+            subtitle: &subtitle,
+            x,
+            y: Axis::new("thickness h", "").over(0.0, 1.08 * self.top),
+            curves: &[Curve { name: "", x: xs, y: field, style: Style::Solid, colour: None }],
+            fills: &[Fill { name: "", x: xs, lower: None, upper: field, colour: PILE }],
+            ..Default::default()
+        }
+        .draw()
+    }
 }

@@ -1,24 +1,26 @@
 //! A quantity along a line at four instants: the start, two on the way, the end.
 
 use super::drawing::Drawing;
-use super::story::Story;
+use super::view::View;
 use crate::output::figures::{Axis, Curve, Figure, Fill, Profiles, Style, short};
 
-/// Colours of the pile at the end, and of what lies beneath it.
-pub(super) const PILE: [u8; 3] = [201, 178, 140];
+/// Colour of a layer at the end.
+pub const PILE: [u8; 3] = [201, 178, 140];
+/// Colours of the ground beneath it and of walls.
 const GROUND: [u8; 3] = [150, 140, 128];
 const WALL: [u8; 3] = [88, 92, 104];
 
 /// What is drawn along the line.
-pub(super) struct Line<'a> {
+#[derive(Debug, Clone, Default)]
+pub struct Line<'a> {
     /// The places.
     pub x: &'a [f64],
     /// The values at every instant that is kept.
     pub series: Vec<Vec<f64>>,
     /// Is it a thickness, drawn from 0 and filled at the end?
     pub filled: bool,
-    /// The ground on which it lies; empty for none.
-    pub ground: &'a [f64],
+    /// The ground beneath it, with its name for the legend.
+    pub ground: Option<(&'static str, &'a [f64])>,
     /// Where walls stand.
     pub walls: Vec<f64>,
     /// Where the line begins and ends; found from the places where `None`.
@@ -44,8 +46,8 @@ fn instants(series: &[Vec<f64>]) -> Vec<usize> {
 }
 
 /// The drawing of a quantity with this label.
-pub(super) fn drawing<'a>(
-    story: &'a Story,
+pub fn profiles<'a>(
+    view: &'a View,
     (name, caption): (&'static str, &str),
     label: &'static str,
     line: Line<'a>,
@@ -53,7 +55,7 @@ pub(super) fn drawing<'a>(
     Drawing::new(name, caption, move || {
         let Line { x, series, .. } = &line;
         let shown = instants(series);
-        let names: Vec<String> = shown.iter().map(|&k| format!("t = {}", short(story.times[k]))).collect();
+        let names: Vec<String> = shown.iter().map(|&k| format!("t = {}", short(view.times[k]))).collect();
         let style = |place: usize| match place {
             0 => (Style::Dashed, Some([110, 110, 110])),
             place if place + 1 == shown.len() => (Style::Solid, Some([0, 114, 178])),
@@ -65,14 +67,15 @@ pub(super) fn drawing<'a>(
             Curve { name: &names[place], x, y: &series[k], style, colour }
         };
         let curves: Vec<Curve> = shown.iter().enumerate().map(curve).collect();
-        let ends =
-            |fold: fn(f64, f64) -> f64| series.iter().flatten().chain(line.ground).copied().fold(0.0, fold);
+        let lower = line.ground.map(|(_, heights)| heights);
+        let ends = |fold: fn(f64, f64) -> f64| {
+            series.iter().flatten().chain(lower.unwrap_or(&[])).copied().fold(0.0, fold)
+        };
         let (low, high) = (ends(f64::min), ends(f64::max));
         let top = low + 1.08 * (high - low);
-        let lower = (!line.ground.is_empty()).then_some(line.ground);
         let mut fills = Vec::new();
-        if let Some(upper) = lower {
-            fills.push(Fill { name: "table", x, lower: None, upper, colour: GROUND });
+        if let Some((name, upper)) = line.ground {
+            fills.push(Fill { name, x, lower: None, upper, colour: GROUND });
         }
         if let Some(upper) = series.last().filter(|_| line.filled) {
             fills.push(Fill { name: "", x, lower, upper, colour: PILE });
@@ -88,8 +91,8 @@ pub(super) fn drawing<'a>(
         }
         let y = Axis::new(label, "");
         Profiles {
-            title: &story.title,
-            subtitle: &story.subtitle,
+            title: &view.title,
+            subtitle: &view.subtitle,
             x: match line.ends {
                 Some([a, b]) if line.walls.is_empty() => Axis::new("x", "").over(a, b),
                 Some([a, b]) => Axis::new("x", "").over(a - room, b + room),

@@ -1,41 +1,15 @@
-//! Where a run took place: its cells, and what lies under them.
+//! The table of a growing sandpile: its nodes, holes, height and walls.
 
-use crate::grid::Grid;
-use crate::output::frames::Field;
-use crate::raster::Raster;
-use crate::release::Sparse;
+use super::MODEL;
+use crate::model::{Domain, Model, Plane};
+use std::borrow::Cow;
 use std::sync::Arc;
 
-/// Where the cells lie, and what lies under them.
-#[derive(Debug, Clone)]
-pub struct Plane {
-    /// Cell centres along x.
-    pub x: Vec<f64>,
-    /// Cell centres along y; empty in one dimension.
-    pub y: Vec<f64>,
-    /// What lies under the cells, and with it the model.
-    pub under: Under,
-    /// Released thickness normal to the bed on a mountain, thickness at the start on a chute; empty on a table.
-    pub release: Sparse,
-}
-
-/// What lies under the cells.
-#[derive(Debug, Clone)]
-pub enum Under {
-    /// A chute in the papers' scaling.
-    Chute,
-    /// A mountain; lengths are metres, times seconds. While a run computes, its grounds hold the elevation and the raster has no
-    /// values: see [`Plane::with_bed`].
-    Mountain(Arc<Raster>),
-    /// The table of a growing sandpile, in the papers' scaling.
-    Table(Table),
-}
-
-/// The table of a growing sandpile: the standing layer lies on the nodes, the rolling layer in the cells.
+/// The table of a growing sandpile: the standing layer stands on the nodes, the rolling layer in the cells.
 ///
 /// One dimension has no `y_node` and no `wall_y`; x runs fastest everywhere.
 #[derive(Debug, Clone, Default)]
-pub struct Table {
+pub struct TableDomain {
     /// Nodes along x, one more than cells.
     pub x_node: Vec<f64>,
     /// Nodes along y, one more than cells; empty in one dimension.
@@ -50,90 +24,36 @@ pub struct Table {
     pub wall_y: Vec<bool>,
 }
 
-impl Plane {
-    /// The cells of a grid, with what lies under them and what was released.
-    #[must_use]
-    pub fn of<const D: usize>(grid: &Grid<D>, under: Under, release: Sparse) -> Plane {
-        let centres = |axis: usize| {
-            let along = |i: usize| grid.centre([i; D])[axis];
-            (0..grid.cells[axis]).map(along).collect::<Vec<f64>>()
-        };
-        Plane { x: centres(0), y: if D > 1 { centres(1) } else { Vec::new() }, under, release }
+impl Domain for TableDomain {
+    fn model(&self) -> &'static Model {
+        &MODEL
     }
 
-    /// A table with these cell centres.
-    #[must_use]
-    pub fn table(x: Vec<f64>, y: Vec<f64>, table: Table) -> Plane {
-        debug_assert!(table.fits(&x, &y), "the parts of the table differ in length");
-        Plane { x, y, under: Under::Table(table), release: Sparse::default() }
+    fn nodes(&self) -> Option<[&[f64]; 2]> {
+        Some([&self.x_node, &self.y_node])
     }
 
-    /// The same plane with the elevation of its cells, if it is a mountain.
-    #[must_use]
-    pub fn with_bed(mut self, elevation: impl FnOnce() -> Vec<f64>) -> Plane {
-        if let Under::Mountain(bed) = &mut self.under {
-            *bed = Arc::new(bed.with_values(elevation()));
-        }
-        self
-    }
-
-    /// The elevation model, on a mountain.
-    #[must_use]
-    pub fn mountain(&self) -> Option<&Raster> {
-        match &self.under {
-            Under::Mountain(bed) => Some(bed),
-            _ => None,
-        }
-    }
-
-    /// The table, if it is one.
-    #[must_use]
-    pub fn as_table(&self) -> Option<&Table> {
-        match &self.under {
-            Under::Table(table) => Some(table),
-            _ => None,
-        }
-    }
-
-    /// Is it a mountain?
-    #[must_use]
-    pub fn is_terrain(&self) -> bool {
-        self.mountain().is_some()
-    }
-
-    /// Bed elevation of every cell \[m\], on a mountain.
-    #[must_use]
-    pub fn bed(&self) -> Option<&[f64]> {
-        self.mountain().map(|raster| raster.values.as_slice())
-    }
-
-    /// The quantities that are kept as series, in the order of the frames.
-    #[must_use]
-    pub fn series(&self) -> Vec<Field> {
-        let cells = self.x.len() * self.y.len().max(1);
-        let field = |name: &str, length| Field { name: name.to_owned(), length };
-        if let Some(table) = self.as_table() {
-            return vec![field("standing_layer", table.nodes()), field("rolling_layer", cells)];
-        }
-        let mut names = vec!["thickness", "velocity_x"];
-        if !self.y.is_empty() {
-            names.push("velocity_y");
-        }
-        if self.is_terrain() {
-            names.extend(["surface", "speed"]);
-        }
-        names.into_iter().map(|name| field(name, cells)).collect()
-    }
-
-    /// Where mass can leave, in the order of the books: over the four sides, and inside them.
-    #[must_use]
-    pub fn outlets(&self) -> [&'static str; 5] {
-        let within = if self.as_table().is_some() { "hole" } else { "nodata" };
-        ["left", "right", "bottom", "top", within]
+    fn fixed(&self) -> Vec<(&'static str, Cow<'_, [f64]>)> {
+        let faces = |walls: &[bool]| walls.iter().map(|&wall| f64::from(wall)).collect();
+        vec![
+            ("table_height", self.height.as_slice().into()),
+            ("wall_x", faces(&self.wall_x)),
+            ("wall_y", faces(&self.wall_y)),
+        ]
     }
 }
 
-impl Table {
+impl TableDomain {
+    /// The plane of cells with these centres on the table.
+    ///
+    /// # Panics
+    /// In a debug build, if the parts of the table differ in length.
+    #[must_use]
+    pub fn plane(self, x: Vec<f64>, y: Vec<f64>) -> Plane {
+        debug_assert!(self.fits(&x, &y), "the parts of the table differ in length");
+        Plane { x, y, domain: Arc::new(self) }
+    }
+
     /// Number of nodes.
     #[must_use]
     pub fn nodes(&self) -> usize {
@@ -168,7 +88,7 @@ impl Table {
         self.blank_part(field.len(), 0, field);
     }
 
-    /// [`Table::blank`] of a part of a field of `length` numbers that begins with number `from`.
+    /// [`TableDomain::blank`] of a part of a field of `length` numbers that begins with number `from`.
     pub(crate) fn blank_part(&self, length: usize, from: usize, part: &mut [f64]) {
         let [columns, rows] = self.cells();
         if length == columns * rows {
@@ -246,15 +166,15 @@ mod tests {
     use super::*;
 
     /// Three by two cells, the one in the upper right corner beside the table, a wall at the left.
-    fn table() -> Table {
+    fn table() -> TableDomain {
         let mut wall_x = vec![false; 8];
         (wall_x[0], wall_x[4]) = (true, true);
-        Table {
+        TableDomain {
             x_node: vec![0.0, 1.0, 2.0, 3.0],
             y_node: vec![0.0, 1.0, 2.0],
             inside: vec![true, true, true, true, true, false],
             wall_x,
-            ..Table::default()
+            ..TableDomain::default()
         }
     }
 
@@ -265,7 +185,8 @@ mod tests {
         table().blank(&mut nodes);
         let blank = |field: &[f64]| (0..field.len()).filter(|&k| field[k].is_nan()).collect::<Vec<_>>();
         assert_eq!((blank(&cells), blank(&nodes)), (vec![5], vec![11]));
-        let line = Table { x_node: vec![0.0, 1.0, 2.0], inside: vec![true, false], ..Table::default() };
+        let line =
+            TableDomain { x_node: vec![0.0, 1.0, 2.0], inside: vec![true, false], ..TableDomain::default() };
         let mut nodes = [1.0; 3];
         line.blank(&mut nodes);
         assert_eq!(blank(&nodes), [2]);
