@@ -2,10 +2,12 @@
 
 mod coverage;
 mod error;
+mod outlines;
 mod sparse;
 mod vector;
 
 pub use error::ReleaseError;
+pub use outlines::Outlines;
 pub use sparse::Sparse;
 
 use crate::raster::Raster;
@@ -107,25 +109,6 @@ pub fn polygons(path: &Path, thickness: &Thickness, template: &Raster) -> Result
         true => Ok(height),
         false => Err(ReleaseError::Nothing { path: path.into(), problem: "the thickness is 0 everywhere" }),
     }
-}
-
-/// All polygons of a shapefile or GeoJSON file; where they overlap, each stands for itself.
-///
-/// # Errors
-/// [`ReleaseError`] for unreadable files, other shapes than polygons, rings that cross themselves.
-pub fn outlines(path: &Path) -> Result<Vec<Polygon>, ReleaseError> {
-    let mut outlines = Vec::new();
-    for (feature, number) in Layer::read(path)?.features.into_iter().zip(1..) {
-        for polygon in feature.polygons {
-            sound(&polygon).map_err(|problem| ReleaseError::Shape {
-                path: path.into(),
-                feature: number,
-                problem,
-            })?;
-            outlines.push(polygon);
-        }
-    }
-    Ok(outlines)
 }
 
 /// Thickness per cell \[m\] of a raster, carried to the grid of `template` by area, so that the sum of h * cell^2 stays.

@@ -53,11 +53,13 @@
 //! The pages under `docs/` of the repository hold the equations, the schemes, the errata of the papers, the case file
 //! and the output files; `ARCHITECTURE.md` and `CONTRIBUTING.md` say how it is built and how to extend it.
 
+pub use disk::Disk;
 pub use granflow_case as case;
 pub use granflow_engine::{grid, kernels, simulation};
 pub use granflow_geo::{raster, release, terrain};
 pub use granflow_model::{hadeler_kuttler, limiter, real, savage_hutter, scheme, time};
 
+mod disk;
 pub mod output;
 
 pub mod results;

@@ -18,7 +18,7 @@ pub use files::{FILM_SHARE, FilesError};
 pub use plane::{Plane, Table, Under};
 pub use story::Story;
 
-use crate::case::{Case, FileKind};
+use crate::case::{FileKind, RunPlan};
 use crate::output::frames::Frames;
 use crate::output::ledger::Entry;
 use crate::output::netcdf::{Axis, Crs, Dataset, Values, Variable, history};
@@ -35,8 +35,10 @@ pub struct Finished {
     pub directory: PathBuf,
     /// Kinds of files that the case asks for.
     pub files: Vec<FileKind>,
-    /// The whole text of the case.
+    /// The text of the case, with the overrides as comment lines.
     pub case: String,
+    /// The case with the overrides laid in.
+    pub resolved: String,
     /// Where the cells lie.
     pub plane: Plane,
     /// The series, on disk.
@@ -93,10 +95,12 @@ const QUANTITIES: [(&str, &str, &str, &str); 20] = [
 const REACHED: f64 = 1.0;
 
 impl Finished {
-    /// Put together what a run leaves, with the maps and figures that follow from others.
+    /// Put together what a run leaves, with the maps and figures that follow from others, of a mass that is a film below
+    /// the first of two numbers and whose density is the second.
     #[must_use]
     pub fn new(
-        case: &Case,
+        case: &RunPlan,
+        [film, density]: [f64; 2],
         directory: PathBuf,
         plane: Plane,
         frames: Frames,
@@ -108,8 +112,7 @@ impl Finished {
         if plane.is_terrain()
             && let Some((_, speed)) = maps.iter().find(|(name, _)| *name == "peak_speed")
         {
-            let pressure: Vec<f64> =
-                speed.iter().map(|v| case.material().density() * v * v / 1000.0).collect();
+            let pressure: Vec<f64> = speed.iter().map(|v| density * v * v / 1000.0).collect();
             summary.add("peak_pressure_max", largest(&pressure));
             if let Some((length, drop)) = runout(&plane, &pressure) {
                 summary.runout = Some(length);
@@ -122,8 +125,8 @@ impl Finished {
                 summary.add(&format!("{name}_max"), largest(values));
             }
         }
-        let (files, film) = (case.files(), case.scheme.film());
-        Finished { directory, files, case: case.text(), plane, frames, ledger, maps, film, summary }
+        let (files, text, resolved) = (case.files.clone(), case.text(), case.resolved());
+        Finished { directory, files, case: text, resolved, plane, frames, ledger, maps, film, summary }
     }
 
     /// A map by its name.
@@ -197,8 +200,9 @@ impl Finished {
         let dataset = Dataset {
             title: self.summary.title.clone(),
             history: history(SystemTime::now(), command),
-            case: self.case.clone(),
+            case: self.resolved.clone(),
             attributes: vec![
+                ("case_text".to_owned(), self.case.clone()),
                 ("model".to_owned(), self.summary.model.clone()),
                 ("scheme".to_owned(), self.summary.scheme.clone()),
                 ("stop_reason".to_owned(), self.summary.stop_reason.to_string()),

@@ -6,7 +6,7 @@ mod saved;
 mod series;
 mod writer;
 
-use crate::case::{self, Case};
+use crate::case::{self, Checked, Ends, RunPlan, Until};
 use crate::hadeler_kuttler::scheme::HadelerKuttler;
 use crate::kernels::Kernel;
 use crate::output;
@@ -98,7 +98,7 @@ pub enum RunError {
 /// # Errors
 /// [`RunError`]; what was complete before stays complete.
 pub fn run(
-    case: &Case,
+    case: Checked,
     options: &Options,
     stop: &AtomicBool,
     report: &mut (dyn FnMut(&Status) + Send),
@@ -107,17 +107,22 @@ pub fn run(
     if options.threads > MOST_THREADS {
         return Err(RunError::Threads(format!("{} are more than {MOST_THREADS}", options.threads)));
     }
-    let scene = Scene::load(case)?;
+    let Checked { run: case, kind } = case;
+    let scene = Scene::load(&case, kind)?;
+    let (film, density) = (scene.film(), scene.density());
     let pool = rayon::ThreadPoolBuilder::new()
         .num_threads(options.threads)
         .build()
         .map_err(|error| RunError::Threads(error.to_string()))?;
     // The loop itself is one of the pool's threads: a step then needs no queue, and no allocation.
-    pool.install(|| scene.simulate(case, Work { case, options, stop, report, clock }))
+    let work = Work { case: &case, film, density, options, stop, report, clock };
+    pool.install(|| scene.simulate(&case, work))
 }
 
 struct Work<'a> {
-    case: &'a Case,
+    case: &'a RunPlan,
+    film: f64,
+    density: f64,
     options: &'a Options,
     stop: &'a AtomicBool,
     report: &'a mut (dyn FnMut(&Status) + Send),
@@ -179,10 +184,10 @@ struct Run<'a, 's, const D: usize, S: Kernel<D>> {
 
 impl<const D: usize, S: Model<D>> Run<'_, '_, D, S> {
     fn go(mut self) -> Result<Finished, RunError> {
-        let time = self.work.case.time.clone();
-        let end = time.end.unwrap_or(f64::INFINITY);
+        let ends = self.work.case.ends;
+        let end = ends.time.unwrap_or(f64::INFINITY);
         let reason = loop {
-            if let Some(reason) = self.over(&time, end) {
+            if let Some(reason) = self.over(&ends, end) {
                 break reason;
             }
             // A fixed step is never cut for a frame: the frame waits for the step.
@@ -241,13 +246,13 @@ impl<const D: usize, S: Model<D>> Run<'_, '_, D, S> {
         let (time, step) = (self.simulation.time(), self.simulation.step());
         let max_speed = self.simulation.speed();
         self.peak_speed = self.peak_speed.max(max_speed);
-        if self.work.case.time.stop.is_some() {
+        if self.work.case.ends.kinetic_energy.is_some() {
             self.simulation.take_sums();
             self.energy = self.simulation.totals().energy;
             self.peak_energy = self.peak_energy.max(self.energy);
         }
         (self.work.report)(&Status { time, step, wet_cells: self.wet_cells, max_speed });
-        let by_steps = match self.work.case.frames() {
+        let by_steps = match self.work.case.frames {
             case::Frames::Steps(every) => step % every == 0,
             _ => false,
         };
@@ -271,47 +276,52 @@ impl<const D: usize, S: Model<D>> Run<'_, '_, D, S> {
     }
 
     /// Why the run is over, if it is.
-    fn over(&self, time: &case::Time, end: f64) -> Option<StopReason> {
+    fn over(&self, ends: &Ends, end: f64) -> Option<StopReason> {
         let simulation = &self.simulation;
         if self.work.stop.load(Ordering::Relaxed) {
             return Some(StopReason::Interrupted);
         }
-        if time.until == Some(case::Until::Steady) && self.is_steady(time.steady_rate()) {
+        let steady = match ends.until {
+            Some(Until::Steady { rate }) => self.is_steady(rate),
+            Some(Until::Equilibrium) => true,
+            _ => false,
+        };
+        if steady {
             return Some(StopReason::Steady);
         }
-        if time.until == Some(case::Until::Rest) {
+        if let Some(Until::Rest { speed }) = ends.until {
             // Where no cell could send a signal (nothing but films), nothing will ever move.
             if simulation.at_rest() || simulation.rate() == 0.0 {
                 return Some(StopReason::AtRest);
             }
-            if let Some(limit) = time.rest_speed
+            if let Some(limit) = speed
                 && simulation.step() > 1
                 && simulation.speed() < limit
             {
                 return Some(StopReason::BelowSpeed);
             }
         }
-        if let Some(stop) = &time.stop
+        if let Some(share) = ends.kinetic_energy
             && simulation.step() > 0
             && self.peak_energy > 0.0
-            && self.energy < stop.kinetic_energy * self.peak_energy
+            && self.energy < share * self.peak_energy
         {
             return Some(StopReason::KineticEnergy);
         }
         if simulation.time() >= end {
             return Some(StopReason::EndTime);
         }
-        (time.steps.is_some_and(|steps| simulation.step() >= steps)).then_some(StopReason::Steps)
+        (ends.steps.is_some_and(|steps| simulation.step() >= steps)).then_some(StopReason::Steps)
     }
 
-    /// Nothing changes faster than `rate`, no source will change any more; or the equilibrium was found at once.
+    /// Nothing changes faster than `rate`, and no source will change any more.
     fn is_steady(&self, rate: f64) -> bool {
         let Some(sand) = self.sand else { return false };
         let time = self.simulation.time();
         let changes =
             sand.sources.is_moving(time) || sand.sources.changes().iter().any(|change| *change > time);
         let [u, v, _] = self.simulation.drift();
-        sand.equilibrium.is_some() || (!changes && u < rate && v < rate)
+        !changes && u < rate && v < rate
     }
 
     /// Save what there is before the failed step, which began at `time`, is reported.

@@ -6,7 +6,9 @@ mod sand;
 pub use mountain::{Mountain, ground_at};
 pub use sand::Sand;
 
-use crate::case::{self, Case, CaseError, Model, SchemeName, Stepping};
+use crate::case::avalanche::SchemeName;
+use crate::case::sandpile::Poured;
+use crate::case::{self, CaseError, Kind, RunPlan, Stepping, chute};
 use crate::grid::Grid;
 use crate::hadeler_kuttler::scheme::HadelerKuttler;
 use crate::kernels::Kernel;
@@ -15,7 +17,7 @@ use crate::release::{ReleaseError, Sparse};
 use crate::results::{Plane, Under};
 use crate::savage_hutter::Flow;
 use crate::savage_hutter::balanced::Balanced;
-use crate::savage_hutter::friction::{Cohesion, Coulomb, Law, SamosAt, Voellmy};
+use crate::savage_hutter::friction::Coulomb;
 use crate::savage_hutter::ground::{Bed, Chute};
 use crate::savage_hutter::kinetic::{
     Kinetic, VERFAHREN_1, VERFAHREN_2, VERFAHREN_3, VERFAHREN_4, VERFAHREN_5,
@@ -54,14 +56,7 @@ impl From<ReleaseError> for SetupError {
 #[derive(Debug)]
 pub enum Scene {
     /// A chute in the papers' scaling, in one or two dimensions.
-    Chute {
-        /// Cells along x and y (1 in one dimension).
-        cells: [usize; 2],
-        /// Ground of every column of cells.
-        grounds: Vec<Chute<2, f64>>,
-        /// Thickness and velocity of every cell.
-        initial: case::InitialState,
-    },
+    Chute(Box<chute::Plan>),
     /// A mountain.
     Mountain(Mountain),
     /// A table in one dimension, with what is poured on it.
@@ -92,126 +87,117 @@ impl Scene {
     ///
     /// # Errors
     /// [`SetupError`] at the first file or key that cannot be used.
-    pub fn load(case: &Case) -> Result<Scene, SetupError> {
-        case.check()?;
-        match (&case.grid, &case.terrain) {
-            (Some(grid), _) if case.model == Model::HadelerKuttler => Ok(match grid.y {
-                None => Scene::Line(Box::new(Sand::load(case, grid)?)),
-                Some(_) => Scene::Table(Box::new(Sand::load(case, grid)?)),
-            }),
-            (Some(grid), _) => Ok(Self::chute(case, grid)?),
-            (None, Some(terrain)) => Ok(Scene::Mountain(Mountain::load(case, terrain)?)),
-            (None, None) => {
-                Err(case.fault("grid", "neither a grid nor a terrain", "add [grid] or [terrain]").into())
+    pub fn load(run: &RunPlan, kind: Kind) -> Result<Scene, SetupError> {
+        match kind {
+            Kind::Chute(plan) => Ok(Scene::Chute(Box::new(plan))),
+            Kind::Terrain(plan) => Ok(Scene::Mountain(Mountain::load(run, plan)?)),
+            Kind::Sandpile(plan) => {
+                let scheme = sand::scheme(&plan);
+                Ok(match plan.table {
+                    Poured::Line(pile) => Scene::Line(Box::new(Sand::load(run, &plan.grid, scheme, *pile)?)),
+                    Poured::Plane(pile) => {
+                        Scene::Table(Box::new(Sand::load(run, &plan.grid, scheme, *pile)?))
+                    }
+                })
             }
         }
     }
 
-    fn chute(case: &Case, grid: &case::Grid) -> Result<Scene, CaseError> {
-        let (chute, material) = (case.chute()?, case.material());
-        let cells = grid.cells();
-        let gravity = case.gravity();
-        let column = |i: usize| {
-            let zeta = chute.zeta(grid.x.centre(i));
-            let cos = gravity * zeta.cos();
-            Chute {
-                tilt: [gravity * zeta.sin(), 0.0],
-                beta: material.epsilon() * material.pressure_coefficient() * cos,
-                cos,
-                curvature: material.eta() * chute.kappa(grid.x.face(i), grid.x.face(i + 1)),
-            }
-        };
-        let grounds = (0..cells[0]).map(column).collect();
-        Ok(Scene::Chute { cells, grounds, initial: case.initial_state()? })
+    /// Thickness below which a cell is a film; 0 where there are none.
+    pub fn film(&self) -> f64 {
+        match self {
+            Scene::Chute(plan) => plan.film,
+            Scene::Mountain(mountain) => mountain.film,
+            Scene::Line(_) | Scene::Table(_) => 0.0,
+        }
+    }
+
+    /// Density of what flows; 1 where it has none.
+    pub fn density(&self) -> f64 {
+        match self {
+            Scene::Chute(plan) => plan.material.density,
+            Scene::Mountain(mountain) => mountain.material.density,
+            Scene::Line(_) | Scene::Table(_) => 1.0,
+        }
     }
 
     /// Build the simulation that the case asks for and hand it to `work`; what the scene holds of every cell is given back
     /// before.
-    pub fn simulate<V: Visit>(self, case: &Case, work: V) -> V::Output {
+    pub fn simulate<V: Visit>(self, run: &RunPlan, work: V) -> V::Output {
+        let step = step_size(run);
         match self {
-            Scene::Line(sand) => work.visit_sand(&sand, sand.simulation(case)),
-            Scene::Table(sand) => work.visit_sand(&sand, sand.simulation(case)),
-            Scene::Mountain(mountain) => mountain.simulate(case, work),
-            Scene::Chute { cells, .. } if cells[1] == 1 => self.on_chute::<1, V>(case, work),
-            Scene::Chute { .. } => self.on_chute::<2, V>(case, work),
-        }
-    }
-
-    fn on_chute<const D: usize, V: Visit>(self, case: &Case, work: V) -> V::Output {
-        let (Scene::Chute { cells, grounds, initial }, Some(description)) = (self, &case.grid) else {
-            unreachable!("a chute comes from a case with a grid")
-        };
-        let axes = [Some(&description.x), description.y.as_ref()];
-        let sides = description.sides();
-        let grid = Grid::<D> {
-            cells: std::array::from_fn(|k| cells[k]),
-            origin: std::array::from_fn(|k| axes[k].map_or(0.0, |axis| axis.from)),
-            size: std::array::from_fn(|k| axes[k].map_or(1.0, case::Axis::width)),
-            boundary: std::array::from_fn(|k| {
-                sides[k].map(|side| match side {
-                    case::Side::Open => Boundary::Open,
-                    case::Side::Wall => Boundary::Wall,
-                    case::Side::Periodic => Boundary::Periodic,
-                })
-            }),
-        };
-        let number = |index: [usize; D]| if D > 1 { index[D - 1] * cells[0] + index[0] } else { index[0] };
-        let plane = Plane::of(&grid, Under::Chute, Sparse::of(initial.thickness.iter().copied()));
-        // Both own what they read: it is given back once the simulation is made.
-        let ground = move |index: [usize; D]| {
-            let Chute { tilt, beta, cos, curvature } = grounds[index[0]];
-            Chute { tilt: std::array::from_fn(|k| tilt[k]), beta, cos, curvature }
-        };
-        let state = move |index: [usize; D]| {
-            let n = number(index);
-            let u = [initial.velocity_x[n], initial.velocity_y[n]];
-            let h = initial.thickness[n];
-            Flow { h, q: std::array::from_fn(|k| h * u[k]) }
-        };
-        let (step, law, film) = (step_size(case), law(case), case.scheme.film());
-        let kinetic = |published: Kinetic| Kinetic {
-            friction: Coulomb { mu: case.material().friction.mu() },
-            ..published
-        };
-        let published = match case.scheme.name {
-            SchemeName::Balanced => {
-                let scheme = Balanced::first(law, film);
-                return work.visit(plane, Simulation::new(scheme, grid, EULER, step, ground, state));
-            }
-            SchemeName::Balanced2 => {
-                let scheme = Balanced::second(law, film);
-                return work.visit(plane, Simulation::new(scheme, grid, SSP_RK2, step, ground, state));
-            }
-            SchemeName::Verfahren1 => VERFAHREN_1,
-            SchemeName::Verfahren2 => VERFAHREN_2,
-            SchemeName::Verfahren3 => VERFAHREN_3,
-            SchemeName::Verfahren4 => VERFAHREN_4,
-            SchemeName::Verfahren5 => VERFAHREN_5,
-            SchemeName::FirstOrder | SchemeName::SecondOrder | SchemeName::Adaptive => {
-                unreachable!("Case::check refuses schemes of another model")
-            }
-        };
-        work.visit(plane, Simulation::new(kinetic(published), grid, EULER, step, ground, state))
-    }
-}
-
-/// The friction of the case.
-fn law(case: &Case) -> Law {
-    let material = case.material();
-    let (density, mu) = (material.density(), material.friction.mu());
-    match &material.friction {
-        case::Friction::Coulomb(_) => Law::Coulomb(Coulomb { mu }),
-        case::Friction::Voellmy(law) => Law::Voellmy(Voellmy { mu, xi: law.xi, gravity: case.gravity() }),
-        case::Friction::Cohesion(law) => Law::Cohesion(Cohesion { mu, bond: law.tau0 / density }),
-        case::Friction::Samosat(law) => {
-            let case::Samosat { mu, tau0, rs0, kappa, r, b } = *law;
-            Law::SamosAt(SamosAt { mu, bond: tau0 / density, rs0, kappa, r, b })
+            Scene::Line(sand) => work.visit_sand(&sand, sand.simulation(step)),
+            Scene::Table(sand) => work.visit_sand(&sand, sand.simulation(step)),
+            Scene::Mountain(mountain) => mountain.simulate(step, work),
+            Scene::Chute(plan) if plan.grid.y.is_none() => on_chute::<1, V>(*plan, step, work),
+            Scene::Chute(plan) => on_chute::<2, V>(*plan, step, work),
         }
     }
 }
 
-fn step_size(case: &Case) -> StepSize {
-    match case.scheme.stepping() {
+/// The simulation of a chute, handed to `work`.
+fn on_chute<const D: usize, V: Visit>(plan: chute::Plan, step: StepSize, work: V) -> V::Output {
+    let chute::Plan { grid: description, sides, zeta, kappa, epsilon, eta, material, scheme, film, initial } =
+        plan;
+    let (cells, gravity) = (description.cells(), material.gravity);
+    let column = |(zeta, kappa): (f64, f64)| {
+        let cos = gravity * zeta.cos();
+        Chute {
+            tilt: [gravity * zeta.sin(), 0.0],
+            beta: epsilon * material.pressure_coefficient * cos,
+            cos,
+            curvature: eta * kappa,
+        }
+    };
+    let grounds: Vec<Chute<2, f64>> = zeta.into_iter().zip(kappa).map(column).collect();
+    let axes = [Some(&description.x), description.y.as_ref()];
+    let grid = Grid::<D> {
+        cells: std::array::from_fn(|k| cells[k]),
+        origin: std::array::from_fn(|k| axes[k].map_or(0.0, |axis| axis.from)),
+        size: std::array::from_fn(|k| axes[k].map_or(1.0, case::Axis::width)),
+        boundary: std::array::from_fn(|k| {
+            sides[k].map(|side| match side {
+                case::Side::Open => Boundary::Open,
+                case::Side::Wall => Boundary::Wall,
+                case::Side::Periodic => Boundary::Periodic,
+            })
+        }),
+    };
+    let number = |index: [usize; D]| if D > 1 { index[D - 1] * cells[0] + index[0] } else { index[0] };
+    let plane = Plane::of(&grid, Under::Chute, Sparse::of(initial.thickness.iter().copied()));
+    // Both own what they read: it is given back once the simulation is made.
+    let ground = move |index: [usize; D]| {
+        let Chute { tilt, beta, cos, curvature } = grounds[index[0]];
+        Chute { tilt: std::array::from_fn(|k| tilt[k]), beta, cos, curvature }
+    };
+    let state = move |index: [usize; D]| {
+        let n = number(index);
+        let u = [initial.velocity_x[n], initial.velocity_y[n]];
+        let h = initial.thickness[n];
+        Flow { h, q: std::array::from_fn(|k| h * u[k]) }
+    };
+    let friction = Coulomb { mu: material.mu };
+    let published = match scheme {
+        SchemeName::Balanced => {
+            let scheme = Balanced::first(material.law, film);
+            return work.visit(plane, Simulation::new(scheme, grid, EULER, step, ground, state));
+        }
+        SchemeName::Balanced2 => {
+            let scheme = Balanced::second(material.law, film);
+            return work.visit(plane, Simulation::new(scheme, grid, SSP_RK2, step, ground, state));
+        }
+        SchemeName::Verfahren1 => VERFAHREN_1,
+        SchemeName::Verfahren2 => VERFAHREN_2,
+        SchemeName::Verfahren3 => VERFAHREN_3,
+        SchemeName::Verfahren4 => VERFAHREN_4,
+        SchemeName::Verfahren5 => VERFAHREN_5,
+    };
+    let scheme = Kinetic { friction, ..published };
+    work.visit(plane, Simulation::new(scheme, grid, EULER, step, ground, state))
+}
+
+fn step_size(run: &RunPlan) -> StepSize {
+    match run.stepping {
         Stepping::Fixed(dt) => StepSize::Fixed(dt),
         Stepping::Courant(courant) => StepSize::Courant(courant),
     }

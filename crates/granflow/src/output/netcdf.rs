@@ -112,7 +112,7 @@ pub struct Dataset<'a> {
     pub title: String,
     /// What made the file; see [`history`].
     pub history: String,
-    /// The whole text of the case.
+    /// The case as one text that computes the same when it is run again.
     pub case: String,
     /// Further global attributes.
     pub attributes: Vec<(String, String)>,

@@ -3,7 +3,7 @@
 use super::model::{Maps, Model};
 use super::writer::Writer;
 use super::{Run, relative};
-use crate::case::{self, Case};
+use crate::case::{RunPlan, Until};
 use crate::output::frames::Frames;
 use crate::output::ledger::{Entry, sum};
 use crate::output::summary::{StopReason, Summary};
@@ -14,7 +14,9 @@ use std::path::PathBuf;
 /// A finished run but for its series and its ledger, which the writer has.
 #[derive(Debug)]
 pub(super) struct Ending {
-    case: Case,
+    case: RunPlan,
+    film: f64,
+    density: f64,
     directory: PathBuf,
     plane: Plane,
     maps: Maps,
@@ -24,8 +26,8 @@ pub(super) struct Ending {
 impl Ending {
     /// Put it together.
     pub fn finished(self, frames: Frames, ledger: Vec<Entry>) -> Finished {
-        let Ending { case, directory, plane, maps, summary } = self;
-        Finished::new(&case, directory, plane, frames, ledger, maps, summary)
+        let Ending { case, film, density, directory, plane, maps, summary } = self;
+        Finished::new(&case, [film, density], directory, plane, frames, ledger, maps, summary)
     }
 }
 
@@ -38,6 +40,8 @@ impl<const D: usize, S: Model<D>> Run<'_, '_, D, S> {
         let maps = kept.map(|(name, map)| (name, layout.unpadded(map))).chain(end).collect();
         Ending {
             case: self.work.case.clone(),
+            film: self.work.film,
+            density: self.work.density,
             directory: self.work.options.directory.clone(),
             plane: self.plane.clone().with_bed(|| S::elevation(&self.simulation)),
             maps,
@@ -56,7 +60,8 @@ impl<const D: usize, S: Model<D>> Run<'_, '_, D, S> {
         let mut maps = simulation.into_maps();
         maps.extend(end);
         let (case, directory) = (work.case.clone(), work.options.directory.clone());
-        (Ending { case, directory, plane, maps, summary }, writer)
+        let (film, density) = (work.film, work.density);
+        (Ending { case, film, density, directory, plane, maps, summary }, writer)
     }
 
     /// The figures of the run as they stand.
@@ -72,8 +77,8 @@ impl<const D: usize, S: Model<D>> Run<'_, '_, D, S> {
         let stopping_time = (stopped && !direct).then(|| simulation.time());
         let mut summary = Summary {
             title: case.title.clone(),
-            model: case.model.as_str().to_owned(),
-            scheme: if direct { "direct" } else { case.scheme.name.as_str() }.to_owned(),
+            model: case.model.to_owned(),
+            scheme: if direct { "direct" } else { case.scheme }.to_owned(),
             cells: (self.plane.x.len() * self.plane.y.len().max(1)) as u64,
             steps: simulation.step(),
             time: simulation.time(),
@@ -100,8 +105,8 @@ impl<const D: usize, S: Model<D>> Run<'_, '_, D, S> {
             summary.add(&format!("mass_out_{name}"), value);
         }
         S::sum_up(simulation, self.sand, &mut summary);
-        if case.time.until == Some(case::Until::Steady) && !direct {
-            summary.add("steady_rate", case.time.steady_rate());
+        if let Some(Until::Steady { rate }) = case.ends.until {
+            summary.add("steady_rate", rate);
         }
         summary
     }

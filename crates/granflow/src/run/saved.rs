@@ -35,7 +35,7 @@ impl<'s, const D: usize, S: Model<D>> Run<'_, 's, D, S> {
         if !work.options.resume {
             // An older one would belong to other frames.
             output::remove_if_there(&checkpoint_in(directory))?;
-            let frames = Frames::create(&frame_file, work.case.precision(), plane.series())?;
+            let frames = Frames::create(&frame_file, work.case.precision, plane.series())?;
             let ledger = Ledger::create(&ledger_file, plane.exits())?;
             let mut run = Run::new(work, simulation, plane, sand, frames, ledger)?;
             run.initial = initial;

@@ -10,7 +10,7 @@ use std::time::Instant;
 impl<const D: usize, S: Model<D>> Run<'_, '_, D, S> {
     /// Time between frames, where it is set by time.
     pub(super) fn interval(&self) -> Option<f64> {
-        match self.work.case.frames() {
+        match self.work.case.frames {
             case::Frames::Every(interval) => Some(interval),
             case::Frames::Steps(_) => None,
             // Nobody knows when a run that ends by itself will end.

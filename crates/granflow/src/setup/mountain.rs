@@ -1,7 +1,9 @@
 //! From a case of an avalanche on a mountain to a simulation: elevation, releases, the ground of every cell.
 
-use super::{SetupError, Visit, law, step_size};
-use crate::case::{self, Case, SchemeName};
+use super::{SetupError, Visit};
+use crate::case::avalanche::Material;
+use crate::case::terrain::{Extent, Measured, Order, Plan};
+use crate::case::{self, RunPlan};
 use crate::grid::Grid;
 use crate::raster::{Crs, Raster};
 use crate::release::{self, Sparse};
@@ -10,7 +12,7 @@ use crate::savage_hutter::Flow;
 use crate::savage_hutter::balanced::Balanced;
 use crate::savage_hutter::ground;
 use crate::scheme::Boundary;
-use crate::simulation::Simulation;
+use crate::simulation::{Simulation, StepSize};
 use crate::terrain::{Curvature, Terrain};
 use crate::time::{EULER, SSP_RK2};
 use std::sync::Arc;
@@ -25,6 +27,12 @@ pub struct Mountain {
     pub terrain: Terrain,
     /// Released volume per plan area H \[m\].
     pub release: Sparse,
+    /// What flows, and what holds it back.
+    pub(super) material: Material,
+    /// The order of the scheme.
+    scheme: Order,
+    /// Thickness below which a cell is a film.
+    pub(super) film: f64,
 }
 
 impl Mountain {
@@ -32,21 +40,21 @@ impl Mountain {
     ///
     /// # Errors
     /// [`SetupError`] at the first file or key that cannot be used.
-    pub(super) fn load(case: &Case, terrain: &case::Terrain) -> Result<Self, SetupError> {
-        let terrain = bed(case, terrain)?;
+    pub(super) fn load(run: &RunPlan, plan: Plan) -> Result<Self, SetupError> {
+        let terrain = bed(run, &plan)?;
         let mut release = Sparse::default();
-        for (number, one) in case.release.iter().enumerate() {
-            release = release.plus(volume(case, one, number, &terrain)?);
+        for one in &plan.releases {
+            release = release.plus(volume(one, &terrain)?);
         }
         trim();
-        Ok(Mountain { terrain, release })
+        Ok(Mountain { terrain, release, material: plan.material, scheme: plan.scheme, film: plan.film })
     }
 
     /// The simulation that the case asks for, handed to `work`. The derivatives of the bed are fitted cell by cell as the
     /// simulation asks for its grounds.
-    pub(super) fn simulate<V: Visit>(self, case: &Case, work: V) -> V::Output {
-        let Mountain { terrain, release } = self;
-        let (bed, gravity) = (&terrain.bed, case.gravity());
+    pub(super) fn simulate<V: Visit>(self, step: StepSize, work: V) -> V::Output {
+        let Mountain { terrain, release, material, scheme, film } = self;
+        let (bed, gravity, law) = (&terrain.bed, material.gravity, material.law);
         let columns = bed.columns;
         let grid = Grid {
             cells: [bed.columns, bed.rows],
@@ -58,14 +66,13 @@ impl Mountain {
         // The grounds hold the elevation from here on.
         let under = Under::Mountain(Arc::new(bed.with_values(Vec::new())));
         let plane = Plane::of(&grid, under, thickness);
-        let (law, film) = (law(case), case.scheme.film());
-        let (scheme, stages) = match case.scheme.name {
-            SchemeName::Balanced2 => (Balanced::second(law, film), SSP_RK2),
-            _ => (Balanced::first(law, film), EULER),
+        let (scheme, stages) = match scheme {
+            Order::First => (Balanced::first(law, film), EULER),
+            Order::Second => (Balanced::second(law, film), SSP_RK2),
         };
         let ground = move |cell| ground_at(&terrain, gravity, cell);
         let state = move |[i, j]: [usize; 2]| Flow::still(release.get(j * columns + i));
-        work.visit(plane, Simulation::new(scheme, grid, stages, step_size(case), ground, state))
+        work.visit(plane, Simulation::new(scheme, grid, stages, step, ground, state))
     }
 }
 
@@ -89,60 +96,53 @@ fn trim() {
 }
 
 /// The elevation on the cells that the case asks for.
-fn bed(case: &Case, terrain: &case::Terrain) -> Result<Terrain, SetupError> {
-    let crs = match &terrain.crs {
+fn bed(run: &RunPlan, plan: &Plan) -> Result<Terrain, SetupError> {
+    let crs = match &plan.crs {
         Some(text) => Some(Crs::parse(text).map_err(|error| {
-            case.fault("terrain.crs", error.to_string(), "write it as crs = \"EPSG:31287\"")
+            run.fault("terrain.crs", error.to_string(), "write it as crs = \"EPSG:31287\"")
         })?),
         None => None,
     };
-    let mut bed = Raster::read_in(&case.resolve(&terrain.dem), crs.as_ref())?;
+    let mut bed = Raster::read_in(&plan.dem, crs.as_ref())?;
     let [width, height] = [bed.columns, bed.rows].map(|count| count as f64 * bed.cell);
-    if let Some(cell) = terrain.cell {
+    if let Some(cell) = plan.cell {
         let [columns, rows] = [width / cell, height / cell];
         if columns < 3.0 || rows < 3.0 || columns * rows > MOST_CELLS {
             let message = format!(
                 "cells of {cell} m cut the terrain of {width} m x {height} m into {columns:.1} x {rows:.1}"
             );
             let cure = "allowed are at least 3 along each side, and not more than a machine holds";
-            return Err(case.fault("terrain.cell", message, cure).into());
+            return Err(run.fault("terrain.cell", message, cure).into());
         }
         bed = bed.resample(cell);
     }
-    if let Some(length) = terrain.curvature.length().filter(|length| *length > width.min(height)) {
+    if let Some(length) = plan.curvature.filter(|length| *length > width.min(height)) {
         let message = format!("a window of {length} m is wider than the terrain of {width} m x {height} m");
         let cure = "the window spans a few cells, for instance length = \"20 m\"";
-        return Err(case.fault("terrain.curvature.length", message, cure).into());
+        return Err(run.fault("terrain.curvature.length", message, cure).into());
     }
-    let curvature = terrain.curvature.length().map_or(Curvature::Off, Curvature::Length);
+    let curvature = plan.curvature.map_or(Curvature::Off, Curvature::Length);
     Ok(Terrain::new(bed, curvature))
 }
 
 /// Volume per plan area that one release gives to the cells.
-fn volume(case: &Case, one: &case::Release, number: usize, terrain: &Terrain) -> Result<Sparse, SetupError> {
-    let thickness = match &one.thickness {
-        Some(case::Thickness::Constant(value)) => Some(release::Thickness::Value(*value)),
-        Some(case::Thickness::Attribute(name)) => Some(release::Thickness::Attribute(name.attribute.clone())),
-        None => None,
-    };
-    let missing = || {
-        case.fault(
-            &format!("release.{number}"),
-            "the release says neither where nor how thick",
-            "give polygons with a thickness, a raster, or a cap",
-        )
-    };
-    let cells = match (&one.polygons, &one.raster, &one.cap) {
-        (Some(path), None, None) => {
-            release::polygons(&case.resolve(path), &thickness.ok_or_else(missing)?, &terrain.bed)?
+fn volume(one: &case::terrain::Release, terrain: &Terrain) -> Result<Sparse, SetupError> {
+    let cells = match &one.extent {
+        Extent::Polygons { path, thickness } => {
+            let thickness = match thickness {
+                case::terrain::Thickness::Constant(value) => release::Thickness::Value(*value),
+                case::terrain::Thickness::Attribute(name) => {
+                    release::Thickness::Attribute(name.attribute.clone())
+                }
+            };
+            release::polygons(path, &thickness, &terrain.bed)?
         }
-        (None, Some(path), None) => release::raster(&case.resolve(path), &terrain.bed)?,
-        (None, None, Some(cap)) => release::cap(cap.height, cap.centre, cap.radius, &terrain.bed)?,
-        _ => return Err(missing().into()),
+        Extent::Raster(path) => release::raster(path, &terrain.bed)?,
+        Extent::Cap(cap) => release::cap(cap.height, cap.centre, cap.radius, &terrain.bed)?,
     };
     let measured = match one.measured {
-        case::Measured::Normal => release::Measured::Normal,
-        case::Measured::Vertical => release::Measured::Vertical,
+        Measured::Normal => release::Measured::Normal,
+        Measured::Vertical => release::Measured::Vertical,
     };
     Ok(release::per_plan_area(cells, terrain, measured))
 }

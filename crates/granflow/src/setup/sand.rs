@@ -1,7 +1,8 @@
 //! From a case of growing sandpiles to a simulation: table, transport rays, sources, layers at the start.
 
 use super::SetupError;
-use crate::case::{self, Case, CaseError, Method, SchemeName, Sources, TablePlan};
+use crate::case::sandpile::{Pile, Plan, SchemeName, Sources, TablePlan};
+use crate::case::{self, CaseError, RunPlan, Until};
 use crate::hadeler_kuttler::direct::{Equilibrium, Unsteady};
 use crate::hadeler_kuttler::scheme::{FIRST_ORDER, HadelerKuttler, SECOND_ORDER, Slopes};
 use crate::results::{self, Plane};
@@ -21,6 +22,17 @@ pub struct Sand<const D: usize> {
     pub sources: Sources,
     /// The equilibrium, where the case asks for it without stepping.
     pub equilibrium: Option<Equilibrium<D>>,
+    /// The scheme that steps.
+    scheme: HadelerKuttler,
+}
+
+/// The scheme of a case.
+pub(super) fn scheme(plan: &Plan) -> HadelerKuttler {
+    match plan.scheme {
+        SchemeName::FirstOrder => FIRST_ORDER,
+        SchemeName::SecondOrder => SECOND_ORDER,
+        SchemeName::Adaptive => HadelerKuttler { slopes: Slopes::Adaptive { exponent: plan.theta_exponent } },
+    }
 }
 
 impl<const D: usize> Sand<D> {
@@ -28,23 +40,27 @@ impl<const D: usize> Sand<D> {
     ///
     /// # Errors
     /// [`CaseError`] for a table or a source that cannot be used.
-    pub(super) fn load(case: &Case, grid: &case::Grid) -> Result<Self, SetupError> {
-        let plan = case.table()?;
-        let sources = case.sources(&plan)?;
+    pub(super) fn load(
+        run: &RunPlan,
+        grid: &case::Grid,
+        scheme: HadelerKuttler,
+        pile: Pile<D>,
+    ) -> Result<Self, SetupError> {
+        let Pile { table: plan, sources } = pile;
         let axes = [Some(&grid.x), grid.y.as_ref()];
         let size = std::array::from_fn(|k| axes[k].map_or(1.0, case::Axis::width));
         let origin = std::array::from_fn(|k| axes[k].map_or(0.0, |axis| axis.from));
         let site = Site::new(plan.table.clone(), origin, size, plan.height.clone());
-        let mut sand = Sand { site, sources, equilibrium: None, plan };
-        if case.time.method == Some(Method::Direct) {
-            sand.equilibrium = Some(sand.steady(case)?);
+        let mut sand = Sand { site, sources, equilibrium: None, plan, scheme };
+        if run.ends.until == Some(Until::Equilibrium) {
+            sand.equilibrium = Some(sand.steady(run)?);
         }
         Ok(sand)
     }
 
-    fn steady(&self, case: &Case) -> Result<Equilibrium<D>, CaseError> {
+    fn steady(&self, run: &RunPlan) -> Result<Equilibrium<D>, CaseError> {
         let fault = |key: &str, error: String| {
-            case.fault(key, error, "or let it grow: time.until = \"steady\" with an end, and no method")
+            run.fault(key, error, "or let it grow: time.until = \"steady\" with an end, and no method")
         };
         let Some(source) = self.sources.lasting() else {
             return Err(fault("time.method", "a source changes for ever, so nothing is ever steady".into()));
@@ -84,19 +100,14 @@ impl<const D: usize> Sand<D> {
     }
 
     /// The simulation that the case asks for; at its equilibrium if that is known.
-    pub fn simulation(&self, case: &Case) -> Simulation<D, HadelerKuttler> {
-        let scheme = match case.scheme.name {
-            _ if self.equilibrium.is_some() => FIRST_ORDER,
-            SchemeName::FirstOrder => FIRST_ORDER,
-            SchemeName::SecondOrder => SECOND_ORDER,
-            _ => HadelerKuttler { slopes: Slopes::Adaptive { exponent: case.scheme.theta_exponent() } },
-        };
+    pub fn simulation(&self, step: StepSize) -> Simulation<D, HadelerKuttler> {
+        let scheme = if self.equilibrium.is_some() { FIRST_ORDER } else { self.scheme };
         let (u, v, time) = match &self.equilibrium {
             Some(found) => (&found.u, &found.v, f64::INFINITY),
             None => (&self.plan.standing, &self.plan.rolling, 0.0),
         };
         let rates = self.rates(time);
-        self.site.simulation(scheme, super::step_size(case), &rates, (u, v))
+        self.site.simulation(scheme, step, &rates, (u, v))
     }
 
     /// Rates of the sources at a time, in the cells; at infinity those that last.
