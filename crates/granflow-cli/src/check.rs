@@ -1,6 +1,9 @@
 //! `granflow check`: what a case would compute, and how large it is.
 
-use granflow::case::{Axis, Case, Frames, Grid, Model, SchemeName, Side, Slope, Stepping, Until};
+use granflow::case::avalanche::Material;
+use granflow::case::{
+    Axis, Case, Checked, Frames, Kind, RunPlan, Side, Stepping, Until, chute, sandpile as piles,
+};
 use granflow::hadeler_kuttler::scheme::HadelerKuttler;
 use granflow::kernels::Kernel;
 use granflow::results::Plane;
@@ -67,41 +70,59 @@ impl Visit for Look {
 }
 
 /// Prints the resolved case and the estimates.
-pub fn check(case: &Case) -> Result<(), Failure> {
-    let lines = match case.model {
-        Model::SavageHutter => avalanche(case)?,
-        Model::HadelerKuttler => sandpile::lines(case)?,
+pub fn check(case: &Case, checked: Checked) -> Result<(), Failure> {
+    let Checked { run, kind } = checked;
+    let (head, tail) = match kind {
+        Kind::Sandpile(plan) => {
+            let scheme = match plan.scheme {
+                piles::SchemeName::FirstOrder => "first order, ".to_owned(),
+                piles::SchemeName::SecondOrder => "second order, ".to_owned(),
+                piles::SchemeName::Adaptive => {
+                    let exponent = plan.theta_exponent;
+                    format!("second order away from steady states, theta_exponent {exponent}, ")
+                }
+            };
+            (describe(&run, None, &scheme), sandpile::lines(&run, &plan))
+        }
+        kind => avalanche(&run, kind)?,
     };
-    let text: String = lines.iter().map(|(name, value)| format!("{name:16} {value}\n")).collect();
-    let notes: String = case.notes().iter().map(|note| format!("note: {note}\n")).collect();
+    let lines = head.iter().chain(&tail);
+    let text: String = lines.map(|(name, value)| format!("{name:16} {value}\n")).collect();
+    let notes: String = run.notes.iter().map(|note| format!("note: {note}\n")).collect();
     print(&format!(
         "{text}{notes}\nThe case is in order. Resolved (angles in radians):\n\n{}",
         case.to_toml()
     ))
 }
 
-/// The lines about an avalanche.
-fn avalanche(case: &Case) -> Result<Vec<(&'static str, String)>, Failure> {
-    let scene = Scene::load(case)?;
-    let mut lines = describe(case);
-    match (&scene, &case.grid) {
-        (Scene::Mountain(mountain), _) => lines.extend(terrain_lines(&mountain.terrain)),
-        (Scene::Chute { .. }, Some(grid)) => lines.extend(grid_lines(case, grid)?),
-        _ => {}
-    }
-    let start = scene.simulate(case, Look);
+/// Lines by name.
+type Lines = Vec<(&'static str, String)>;
+
+/// The lines about an avalanche: what it is, and what it comes to.
+fn avalanche(run: &RunPlan, kind: Kind) -> Result<(Lines, Lines), Failure> {
+    let scene = Scene::load(run, kind)?;
+    let order = if run.scheme == "balanced_2" { "second order" } else { "first order" };
+    let scheme = format!("{order}, film {:e}, ", scene.film());
+    let (head, mut lines) = match &scene {
+        Scene::Mountain(mountain) => {
+            (describe(run, Some(&mountain.material), &scheme), terrain_lines(&mountain.terrain))
+        }
+        Scene::Chute(plan) => (describe(run, Some(&plan.material), &scheme), grid_lines(plan)),
+        Scene::Line(_) | Scene::Table(_) => Default::default(),
+    };
+    let start = scene.simulate(run, Look);
     lines.push(("mass", format!("{:.6} in {} cells", start.volume, start.wet)));
     let verdict = if start.margin > 1.0 { "it will start" } else { "it rests" };
     lines.push(("pull", format!("at most {:.6} of what friction holds: {verdict}", start.margin)));
-    lines.extend(effort(case, start.bytes, start.rate));
-    Ok(lines)
+    lines.extend(effort(run, start.bytes, start.rate));
+    Ok((head, lines))
 }
 
 /// Memory and steps, from the Courant number of a step of length 1 at the start.
-fn effort(case: &Case, bytes: usize, rate: f64) -> Vec<(&'static str, String)> {
-    let mut lines = vec![("memory", memory(bytes)), ("steps", steps(case, rate))];
-    if let Stepping::Fixed(step) = case.scheme.stepping() {
-        let (courant, limit) = (step * rate, case.scheme.name.courant_limit());
+fn effort(run: &RunPlan, bytes: usize, rate: f64) -> Lines {
+    let mut lines = vec![("memory", memory(bytes)), ("steps", steps(run, rate))];
+    if let Stepping::Fixed(step) = run.stepping {
+        let (courant, limit) = (step * rate, run.max_courant);
         let verdict = if courant <= limit { "in order" } else { "too large, the scheme is not stable there" };
         lines.push(("Courant number", format!("{courant:.4} at the start (at most {limit}): {verdict}")));
     }
@@ -109,7 +130,7 @@ fn effort(case: &Case, bytes: usize, rate: f64) -> Vec<(&'static str, String)> {
 }
 
 /// The lines about a terrain: size, steepness, curvature under a fast mass.
-fn terrain_lines(terrain: &Terrain) -> Vec<(&'static str, String)> {
+fn terrain_lines(terrain: &Terrain) -> Lines {
     let bed = &terrain.bed;
     let nodata = bed.values.iter().filter(|z| z.is_nan()).count();
     let steep = terrain.steepness(60_f64.to_radians());
@@ -138,48 +159,30 @@ fn terrain_lines(terrain: &Terrain) -> Vec<(&'static str, String)> {
     ]
 }
 
-/// What the case says, with its defaults.
-fn describe(case: &Case) -> Vec<(&'static str, String)> {
-    let files: Vec<&str> = case.files().iter().map(|kind| kind.as_str()).collect();
-    let frames = match case.frames() {
+/// What the case says, with its defaults; `scheme` are the words between the scheme's name and its step.
+fn describe(run: &RunPlan, material: Option<&Material>, scheme: &str) -> Lines {
+    let files: Vec<&str> = run.files.iter().map(|kind| kind.as_str()).collect();
+    let frames = match run.frames {
         Frames::Every(time) => format!("every {time} in time"),
         Frames::Steps(steps) => format!("every {steps} steps"),
         Frames::Ends => "at the start and at the end".to_owned(),
     };
-    let title = if case.title.is_empty() { "without a title" } else { &case.title };
-    let mut lines = vec![
-        ("case", format!("{title} ({})", case.source_name())),
-        ("model", case.model.as_str().to_owned()),
-    ];
-    if let Some(material) = &case.material {
-        let (friction, mu) = (&material.friction, material.friction.mu());
-        let (pressure, density) = (material.pressure_coefficient(), material.density());
+    let title = if run.title.is_empty() { "without a title" } else { &run.title };
+    let mut lines =
+        vec![("case", format!("{title} ({})", run.source_name())), ("model", run.model.to_owned())];
+    if let Some(material) = material {
+        let Material { friction, mu, pressure_coefficient, gravity, density, .. } = material;
         lines.extend([
-            ("friction", format!("{}, mu = {mu:.6} ({:.3} deg)", friction.name(), mu.atan().to_degrees())),
-            ("material", format!("k = {pressure:.6}, gravity {}, density {density}", case.gravity())),
+            ("friction", format!("{friction}, mu = {mu:.6} ({:.3} deg)", mu.atan().to_degrees())),
+            ("material", format!("k = {pressure_coefficient:.6}, gravity {gravity}, density {density}")),
         ]);
     }
     lines.extend([
-        ("scheme", scheme(case)),
-        ("ends", ends(case)),
-        ("output", format!("{} {frames}, {:?}", files.join(", "), case.precision()).to_lowercase()),
+        ("scheme", format!("{}, {scheme}{}", run.scheme, stepping(run.stepping))),
+        ("ends", ends(run)),
+        ("output", format!("{} {frames}, {:?}", files.join(", "), run.precision).to_lowercase()),
     ]);
     lines
-}
-
-fn scheme(case: &Case) -> String {
-    let name = case.scheme.name;
-    let (order, parameter) = match name {
-        SchemeName::Balanced2 => ("second order", format!("film {:e}, ", case.scheme.film())),
-        SchemeName::FirstOrder => ("first order", String::new()),
-        SchemeName::SecondOrder => ("second order", String::new()),
-        SchemeName::Adaptive => (
-            "second order away from steady states",
-            format!("theta_exponent {}, ", case.scheme.theta_exponent()),
-        ),
-        _ => ("first order", format!("film {:e}, ", case.scheme.film())),
-    };
-    format!("{}, {order}, {parameter}{}", name.as_str(), stepping(case.scheme.stepping()))
 }
 
 fn stepping(stepping: Stepping) -> String {
@@ -189,49 +192,40 @@ fn stepping(stepping: Stepping) -> String {
     }
 }
 
-fn ends(case: &Case) -> String {
-    let time = &case.time;
+fn ends(run: &RunPlan) -> String {
+    let ends = &run.ends;
     let mut ways = Vec::new();
-    ways.extend(time.until.map(|until| match (until, time.method, time.rest_speed) {
-        (Until::Steady, Some(_), _) => "at the equilibrium, computed directly".to_owned(),
-        (Until::Steady, None, _) => format!("steady, changes below {:e} in time", time.steady_rate()),
-        (Until::Rest, _, Some(speed)) => format!("below speed {speed:e}"),
-        (Until::Rest, _, None) => "at rest".to_owned(),
+    ways.extend(ends.until.map(|until| match until {
+        Until::Equilibrium => "at the equilibrium, computed directly".to_owned(),
+        Until::Steady { rate } => format!("steady, changes below {rate:e} in time"),
+        Until::Rest { speed: Some(speed) } => format!("below speed {speed:e}"),
+        Until::Rest { speed: None } => "at rest".to_owned(),
     }));
-    ways.extend(
-        time.stop.as_ref().map(|stop| format!("at {} of the peak kinetic energy", stop.kinetic_energy)),
-    );
-    ways.extend(time.end.map(|end| format!("at time {end}")));
-    ways.extend(time.steps.map(|steps| format!("after {steps} steps")));
+    ways.extend(ends.kinetic_energy.map(|share| format!("at {share} of the peak kinetic energy")));
+    ways.extend(ends.time.map(|end| format!("at time {end}")));
+    ways.extend(ends.steps.map(|steps| format!("after {steps} steps")));
     ways.join(", or ")
 }
 
-fn grid_lines(case: &Case, grid: &Grid) -> Result<Vec<(&'static str, String)>, Failure> {
+fn grid_lines(plan: &chute::Plan) -> Lines {
     let with_sides = |name: &str, axis: &Axis, sides: [Side; 2]| {
         let [low, high] = sides.map(|side| format!("{side:?}").to_lowercase());
         format!("{}, {low} | {high}", axis_line(name, axis))
     };
-    let sides = grid.sides();
-    let mut lines = vec![("grid", with_sides("x", &grid.x, sides[0]))];
-    lines.extend(grid.y.as_ref().map(|y| ("", with_sides("y", y, sides[1]))));
-
-    let chute = case.chute()?;
-    let slopes: Vec<f64> = grid.x.centres().iter().map(|x| chute.zeta(*x)).collect();
-    let (low, high) = range(&slopes);
-    lines.push(match case.material().slope {
-        Some(Slope::Profile(_)) => {
-            ("slope", format!("{:.4} to {:.4} deg", low.to_degrees(), high.to_degrees()))
-        }
-        _ => ("slope", format!("{:.4} deg", low.to_degrees())),
-    });
-
-    let state = case.initial_state()?;
-    let (low, high) = range(&state.thickness);
+    let grid = &plan.grid;
+    let mut lines = vec![("grid", with_sides("x", &grid.x, plan.sides[0]))];
+    lines.extend(grid.y.as_ref().map(|y| ("", with_sides("y", y, plan.sides[1]))));
+    let (low, high) = range(&plan.zeta);
+    let (low, high) = (low.to_degrees(), high.to_degrees());
+    let slope = if low == high { format!("{low:.4} deg") } else { format!("{low:.4} to {high:.4} deg") };
+    lines.push(("slope", slope));
+    let thickness = &plan.initial.thickness;
+    let (low, high) = range(thickness);
     let area = grid.x.width() * grid.y.as_ref().map_or(1.0, Axis::width);
-    let wet = state.thickness.iter().filter(|h| **h > case.scheme.film()).count();
-    let mass = state.thickness.iter().sum::<f64>() * area;
+    let wet = thickness.iter().filter(|h| **h > plan.film).count();
+    let mass = thickness.iter().sum::<f64>() * area;
     lines.push(("thickness", format!("{low} to {high}, mass {mass:.6}, {wet} wet cells")));
-    Ok(lines)
+    lines
 }
 
 fn axis_line(name: &str, axis: &Axis) -> String {
@@ -257,14 +251,14 @@ fn memory(bytes: usize) -> String {
 }
 
 /// Number of steps, exact for a fixed step, from the step at the start for an adaptive one.
-fn steps(case: &Case, rate: f64) -> String {
-    let (step, about) = match case.scheme.stepping() {
+fn steps(run: &RunPlan, rate: f64) -> String {
+    let (step, about) = match run.stepping {
         Stepping::Fixed(step) => (step, ""),
         Stepping::Courant(courant) if rate > 0.0 => (courant / rate, "about "),
         Stepping::Courant(_) => return "unknown: nothing is there to move".to_owned(),
     };
-    let by_time = case.time.end.map(|end| (end / step).ceil());
-    match (by_time, case.time.steps) {
+    let by_time = run.ends.time.map(|end| (end / step).ceil());
+    match (by_time, run.ends.steps) {
         (None, None) => format!("unknown, {about}{step:.3e} in time each at the start"),
         (Some(count), None) => format!(
             "{about}{count} of {step:.3e} in time{}",

@@ -3,6 +3,7 @@
 use std::fs;
 use std::path::Path;
 
+use granflow::Disk;
 use granflow::case::Case;
 
 use crate::failure::{Failure, print};
@@ -20,9 +21,8 @@ pub fn demo(out: &Path) -> Result<(), Failure> {
     ] {
         fs::write(&path, text).map_err(|error| Failure::file("write", &path, &error))?;
     }
-    let case = Case::load(&file)?;
-    case.check()?;
-    let finished = compute(&case, &RunOptions { out: Some(out.to_owned()), ..RunOptions::default() })?;
+    let case = Case::read(&file)?.check(&Disk)?;
+    let finished = compute(case, &RunOptions { out: Some(out.to_owned()), ..RunOptions::default() })?;
     let summary = &finished.summary;
     let number = |value: Option<f64>| value.map_or_else(|| "-".to_owned(), |value| format!("{value:.1}"));
     let place = |name: &str| out.join(name).display().to_string();

@@ -4,7 +4,8 @@ use std::path::PathBuf;
 use std::process::ExitCode;
 
 use clap::{Parser, Subcommand};
-use granflow::case::Case;
+use granflow::Disk;
+use granflow::case::{Case, Checked};
 
 mod bench;
 mod check;
@@ -132,10 +133,13 @@ fn main() -> ExitCode {
 fn act(command: Command) -> Result<(), Failure> {
     match command {
         Command::Run { case, out, set, threads, resume, quiet } => {
-            let case = read(&case, &set)?;
-            run::run(&case, &run::RunOptions { out, threads, resume, quiet })
+            let (_, checked) = read(&case, &set)?;
+            run::run(checked, &run::RunOptions { out, threads, resume, quiet })
         }
-        Command::Check { case, set } => check::check(&read(&case, &set)?),
+        Command::Check { case, set } => {
+            let (case, checked) = read(&case, &set)?;
+            check::check(&case, checked)
+        }
         Command::New { list: true, .. } => new::list(),
         Command::New { kind: None, .. } => {
             Err(Failure::usage("which kind of case?", "granflow new --list shows the kinds"))
@@ -150,8 +154,8 @@ fn act(command: Command) -> Result<(), Failure> {
 }
 
 /// Reads a case with its overrides and checks it.
-fn read(path: &std::path::Path, overrides: &[String]) -> Result<Case, Failure> {
-    let case = Case::load_with(path, overrides)?;
-    case.check()?;
-    Ok(case)
+fn read(path: &std::path::Path, overrides: &[String]) -> Result<(Case, Checked), Failure> {
+    let case = Case::read_with(path, overrides)?;
+    let checked = case.check(&Disk)?;
+    Ok((case, checked))
 }

@@ -3,7 +3,7 @@
 use std::num::NonZeroUsize;
 use std::path::{Path, PathBuf};
 
-use granflow::case::{Case, Model};
+use granflow::case::{Checked, Kind, RunPlan};
 use granflow::output::summary::StopReason;
 use granflow::results::{FILM_SHARE, Finished};
 use granflow::run::{self, Options};
@@ -27,7 +27,7 @@ pub struct RunOptions {
 
 impl RunOptions {
     /// The folder of the results: `--out`, else the case's name in the current folder.
-    pub fn directory(&self, case: &Case) -> PathBuf {
+    pub fn directory(&self, case: &RunPlan) -> PathBuf {
         let name =
             || Path::new(case.source_name()).file_stem().map_or_else(|| "result".into(), PathBuf::from);
         self.out.clone().unwrap_or_else(name)
@@ -35,7 +35,7 @@ impl RunOptions {
 }
 
 /// Computes a case, writes its results and says in one line how it ended.
-pub fn run(case: &Case, options: &RunOptions) -> Result<(), Failure> {
+pub fn run(case: Checked, options: &RunOptions) -> Result<(), Failure> {
     let finished = compute(case, options)?;
     if options.quiet { Ok(()) } else { print(&format!("{}\n", line(&finished))) }
 }
@@ -55,12 +55,12 @@ fn line(finished: &Finished) -> String {
 }
 
 /// Computes a case and writes its results, also those of a run that was interrupted.
-pub fn compute(case: &Case, options: &RunOptions) -> Result<Finished, Failure> {
+pub fn compute(case: Checked, options: &RunOptions) -> Result<Finished, Failure> {
     let stop = interrupt::listen()?;
     let mut progress = Progress::new(options.quiet);
-    let (end, sand) = (case.time.end, case.model == Model::HadelerKuttler);
+    let (end, sand) = (case.run.ends.time, matches!(case.kind, Kind::Sandpile(_)));
     let options = Options {
-        directory: options.directory(case),
+        directory: options.directory(&case.run),
         threads: options.threads.map_or(0, NonZeroUsize::get),
         resume: options.resume,
         command: std::env::args().collect::<Vec<_>>().join(" "),
@@ -77,7 +77,7 @@ pub fn compute(case: &Case, options: &RunOptions) -> Result<Finished, Failure> {
         eprintln!(
             "warning: {:.2} % of the mass is in films thinner than {:e}; a smaller scheme.film moves them",
             100.0 * summary.film_share(),
-            case.scheme.film()
+            finished.film
         );
     }
     if summary.stop_reason == StopReason::Interrupted {

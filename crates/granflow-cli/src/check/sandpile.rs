@@ -1,33 +1,30 @@
 //! What a sandpile would compute: table, sources, layers at the start.
 
-use granflow::case::{Axis, Case, Edge, TablePlan};
+use granflow::case::sandpile::{Edge, Pile, Plan, Poured, TablePlan};
+use granflow::case::{Axis, Grid, RunPlan, Until};
 use granflow::hadeler_kuttler::scheme::HadelerKuttler;
 use granflow::simulation::Simulation;
 
-use super::{axis_line, describe, effort, range};
-use crate::failure::Failure;
+use super::{Lines, axis_line, effort, range};
 
-/// The lines about a sandpile.
-pub(super) fn lines(case: &Case) -> Result<Vec<(&'static str, String)>, Failure> {
-    case.check()?;
-    match case.grid.as_ref().and_then(|grid| grid.y.as_ref()) {
-        None => table_lines::<1>(case),
-        Some(_) => table_lines::<2>(case),
+/// The lines about a table and what is poured on it.
+pub(super) fn lines(run: &RunPlan, plan: &Plan) -> Lines {
+    match &plan.table {
+        Poured::Line(pile) => table_lines(run, &plan.grid, pile),
+        Poured::Plane(pile) => table_lines(run, &plan.grid, pile),
     }
 }
 
-fn table_lines<const D: usize>(case: &Case) -> Result<Vec<(&'static str, String)>, Failure> {
-    let plan = case.table::<D>()?;
-    let sources = case.sources(&plan)?;
-    let mut lines = describe(case);
-    let axes: Vec<&Axis> =
-        case.grid.iter().flat_map(|grid| [Some(&grid.x), grid.y.as_ref()]).flatten().collect();
+fn table_lines<const D: usize>(run: &RunPlan, grid: &Grid, pile: &Pile<D>) -> Lines {
+    let Pile { table: plan, sources } = pile;
+    let mut lines = Lines::new();
+    let axes: Vec<&Axis> = grid.axes().collect();
     for (name, axis) in ["x", "y"].into_iter().zip(&axes) {
         lines.push((if name == "x" { "grid" } else { "" }, axis_line(name, axis)));
     }
     let cell: f64 = axes.iter().map(|axis| axis.width()).product();
     let count = plan.table.count();
-    lines.push(("table", format!("{count} cells, {:.6} in all, {}", count as f64 * cell, edges(&plan))));
+    lines.push(("table", format!("{count} cells, {:.6} in all, {}", count as f64 * cell, edges(plan))));
     let (low, high) = range(&plan.height);
     if (low, high) != (0.0, 0.0) {
         lines.push(("", format!("{low} to {high} high")));
@@ -40,16 +37,16 @@ fn table_lines<const D: usize>(case: &Case) -> Result<Vec<(&'static str, String)
     }
     let [u, v] = [&plan.standing, &plan.rolling].map(|layer| range(layer).1);
     lines.push(("layers", format!("at the start standing up to {u}, rolling up to {v}")));
-    if case.time.method.is_some() {
+    if run.ends.until == Some(Until::Equilibrium) {
         lines.push(("steps", "none".to_owned()));
     } else {
         // The paper's bound along each axis, dt max(1, max v)/h: slopes are at most 1.
         let rate = axes.iter().map(|axis| v.max(1.0) / axis.width()).sum();
         let bytes = plan.nodes.counts().iter().product::<usize>()
             * Simulation::<D, HadelerKuttler>::bytes_per_cell(false);
-        lines.extend(effort(case, bytes, rate));
+        lines.extend(effort(run, bytes, rate));
     }
-    Ok(lines)
+    lines
 }
 
 /// How many edges of each kind there are, open and walls.

@@ -28,11 +28,11 @@ pub struct Mountain {
     /// Released volume per plan area H \[m\].
     pub release: Sparse,
     /// What flows, and what holds it back.
-    pub(super) material: Material,
+    pub material: Material,
     /// The order of the scheme.
     scheme: Order,
     /// Thickness below which a cell is a film.
-    pub(super) film: f64,
+    pub film: f64,
 }
 
 impl Mountain {

@@ -1,6 +1,6 @@
 //! One example run by one scheme, in memory, and what is measured on it.
 
-use granflow::case::Case;
+use granflow::case::{Case, NoFiles};
 use granflow::hadeler_kuttler::scheme::HadelerKuttler;
 use granflow::kernels::Kernel;
 use granflow::results::Plane;
@@ -97,8 +97,10 @@ impl Computed {
             .chain([format!("scheme.name={}", scheme.0)])
             .collect();
         let case = Case::parse_with(example.case, &format!("{}.toml", example.name), &overrides)?;
-        let scene = Scene::load(&case).map_err(granflow::run::RunError::Setup)?;
-        Ok(scene.simulate(&case, Collect { example, scheme, steps: case.time.steps.unwrap_or(0) }))
+        let checked = case.check(&NoFiles)?;
+        let run = checked.run;
+        let scene = Scene::load(&run, checked.kind).map_err(granflow::run::RunError::Setup)?;
+        Ok(scene.simulate(&run, Collect { example, scheme, steps: run.ends.steps.unwrap_or(0) }))
     }
 
     /// The first frame.
