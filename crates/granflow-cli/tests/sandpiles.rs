@@ -1,5 +1,6 @@
 //! The sandpiles in `cases/`, computed by the program on coarse grids: what their comments promise comes out.
 
+use granflow::Disk;
 use granflow::case::Case;
 use granflow::output::frames::Frames;
 use granflow::output::ledger::Ledger;
@@ -224,7 +225,7 @@ fn compute(case: &Case, directory: &Path, resume: bool, stop: Option<u64>) -> gr
             interrupt.store(true, Ordering::Relaxed);
         }
     };
-    granflow::run::run(case, &options, &interrupt, &mut report).unwrap()
+    granflow::run::run(case.check(&Disk).unwrap(), &options, &interrupt, &mut report).unwrap()
 }
 
 #[test]
@@ -232,7 +233,7 @@ fn an_interrupted_pile_goes_on_as_if_it_had_not_been() {
     for (name, stops) in [("sandpile_switched", [37, 150, 151]), ("sandpile_moving", [1, 120, 250])] {
         let changes = ["scheme={name=\"first_order\"}", "grid.x.cells=16", "grid.y.cells=16", "time={end=4}"];
         let path = format!("{}/../../cases/{name}.toml", env!("CARGO_MANIFEST_DIR"));
-        let case = Case::load_with(Path::new(&path), &changes.map(str::to_owned)).unwrap();
+        let case = Case::read_with(Path::new(&path), &changes.map(str::to_owned)).unwrap();
         let folder = tempfile::tempdir().unwrap();
         let [whole, parts] = ["whole", "parts"].map(|name| folder.path().join(name));
         let unbroken = compute(&case, &whole, false, None).summary;

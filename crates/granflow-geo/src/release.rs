@@ -2,10 +2,12 @@
 
 mod coverage;
 mod error;
+mod outlines;
 mod sparse;
 mod vector;
 
 pub use error::ReleaseError;
+pub use outlines::Outlines;
 pub use sparse::Sparse;
 pub use vector::Layer;
 

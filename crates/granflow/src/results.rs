@@ -55,10 +55,12 @@ pub struct Finished {
 }
 
 impl Finished {
-    /// Put together what a run leaves, with the maps and figures that follow from others.
+    /// Put together what a run leaves, with the maps and figures that follow from others, of a mass that is a film below
+    /// the first of two numbers and whose density is the second.
     #[must_use]
     pub fn new(
-        case: &Case,
+        case: &RunPlan,
+        [film, density]: [f64; 2],
         directory: PathBuf,
         plane: Plane,
         frames: Frames,

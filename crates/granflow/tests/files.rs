@@ -1,5 +1,6 @@
 //! One small run on a mountain and one on a chute: every kind of file opens and holds what the run left.
 
+use granflow::Disk;
 use granflow::case::Case;
 use granflow::output::summary::StopReason;
 use granflow::raster::Raster;
@@ -14,9 +15,7 @@ use std::time::Duration;
 fn case(text: &str, folder: &Path) -> Case {
     let file = folder.join("case.toml");
     fs::write(&file, text).unwrap();
-    let case = Case::load(&file).unwrap();
-    case.check().unwrap();
-    case
+    Case::read(&file).unwrap()
 }
 
 /// Compute until `stop` says so.
@@ -28,7 +27,7 @@ fn begin(
 ) -> Result<Finished, RunError> {
     let options = Options { directory: out.to_owned(), threads: 2, resume, command: "test".to_owned() };
     let stopped = AtomicBool::new(false);
-    run(case, &options, &stopped, &mut |status| {
+    run(case.check(&Disk).unwrap(), &options, &stopped, &mut |status| {
         if stop(status) {
             stopped.store(true, Ordering::Relaxed);
         }

@@ -1,7 +1,8 @@
 //! What a run on a mountain takes of the memory: the fields of its engine, from the first file that is read to the last that
 //! is written, and little beside them.
 
-use granflow::case::Case;
+use granflow::Disk;
+use granflow::case::{Case, Checked};
 use granflow::hadeler_kuttler::scheme::HadelerKuttler;
 use granflow::kernels::Kernel;
 use granflow::raster::{Crs, Raster};
@@ -97,7 +98,7 @@ files = ["netcdf"]
 "#;
     let file = folder.join("case.toml");
     std::fs::write(&file, case).unwrap();
-    Case::load(&file).unwrap()
+    Case::read(&file).unwrap()
 }
 
 /// Bytes that the engine's fields take of a cell, without the maps and with them.
@@ -130,7 +131,11 @@ fn a_run_on_a_mountain_takes_what_its_fields_take() {
     // The tiles and the ghosts of this grid, and what is released.
     const BESIDE: f64 = 3.0;
     const ELEVATION: f64 = 8.0;
-    let (fields, bytes) = most(|| Scene::load(&case).unwrap().simulate(&case, Fields));
+    let checked = || case.check(&Disk).unwrap();
+    let (fields, bytes) = most(|| {
+        let Checked { run, kind } = checked();
+        Scene::load(&run, kind).unwrap().simulate(&run, Fields)
+    });
     let most_of_all = fields[0] as f64 + ELEVATION + BESIDE;
     assert!(per_cell(bytes) < most_of_all, "{} bytes a cell to set up {}", per_cell(bytes), fields[0]);
 
@@ -140,7 +145,7 @@ fn a_run_on_a_mountain_takes_what_its_fields_take() {
         resume: false,
         command: "test".to_owned(),
     };
-    let (finished, bytes) = most(|| run(&case, &options, &AtomicBool::new(false), &mut |_| ()).unwrap());
+    let (finished, bytes) = most(|| run(checked(), &options, &AtomicBool::new(false), &mut |_| ()).unwrap());
     assert_eq!(finished.summary.steps, 2);
     // What the writer may have in hand.
     let most_of_all = fields[1] as f64 + BESIDE + per_cell(32 << 20);

@@ -1,0 +1,94 @@
+//! Polygons as one part of the plane: which places it holds and how far they are from its rim.
+
+use super::vector::Layer;
+use super::{ReleaseError, sound};
+use geo::{BoundingRect, Distance, Euclidean, Intersects, Point, Polygon};
+use std::path::Path;
+
+/// The polygons of a file; a place belongs to them if it lies in one of them or on its rim, and not in its holes.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Outlines {
+    polygons: Vec<Polygon>,
+}
+
+impl Outlines {
+    /// All polygons of a shapefile or GeoJSON file; where they overlap, each stands for itself.
+    ///
+    /// # Errors
+    /// [`ReleaseError`] for unreadable files, other shapes than polygons, rings that cross themselves.
+    pub fn read(path: &Path) -> Result<Self, ReleaseError> {
+        let mut polygons = Vec::new();
+        for (feature, number) in Layer::read(path)?.features.into_iter().zip(1..) {
+            for polygon in feature.polygons {
+                sound(&polygon).map_err(|problem| ReleaseError::Shape {
+                    path: path.into(),
+                    feature: number,
+                    problem,
+                })?;
+                polygons.push(polygon);
+            }
+        }
+        Ok(Self { polygons })
+    }
+
+    /// Whether there is no polygon.
+    pub fn is_empty(&self) -> bool {
+        self.polygons.is_empty()
+    }
+
+    /// Whether a place lies in a polygon or on its rim.
+    pub fn holds(&self, [x, y]: [f64; 2]) -> bool {
+        self.polygons.iter().any(|polygon| polygon.intersects(&Point::new(x, y)))
+    }
+
+    /// Distance of a place from the nearest ring, positive within: the greatest over all polygons.
+    pub fn depth(&self, [x, y]: [f64; 2]) -> f64 {
+        let place = Point::new(x, y);
+        let depth = |polygon: &Polygon| {
+            let rings = std::iter::once(polygon.exterior()).chain(polygon.interiors());
+            let away = rings.map(|ring| Euclidean.distance(&place, ring)).fold(f64::INFINITY, f64::min);
+            if polygon.intersects(&place) { away } else { -away }
+        };
+        self.polygons.iter().map(depth).fold(f64::NEG_INFINITY, f64::max)
+    }
+
+    /// The ends [low, high] along x and y.
+    pub fn bounds(&self) -> [[f64; 2]; 2] {
+        let mut bounds = [[f64::INFINITY, f64::NEG_INFINITY]; 2];
+        for rect in self.polygons.iter().filter_map(BoundingRect::bounding_rect) {
+            let ends = [[rect.min().x, rect.max().x], [rect.min().y, rect.max().y]];
+            for (all, one) in bounds.iter_mut().zip(ends) {
+                *all = [all[0].min(one[0]), all[1].max(one[1])];
+            }
+        }
+        bounds
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn read(text: &str) -> Outlines {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("ring.geojson");
+        std::fs::write(&path, text).unwrap();
+        Outlines::read(&path).unwrap()
+    }
+
+    #[test]
+    fn a_polygon_has_its_hole_not() {
+        let ring = read(
+            r#"{"type":"Polygon","coordinates":[[[0,0],[4,0],[4,4],[0,4],[0,0]],[[1,1],[1,3],[3,3],[3,1],[1,1]]]}"#,
+        );
+        assert!(ring.holds([0.5, 2.0]) && !ring.holds([2.0, 2.0]) && !ring.holds([5.0, 2.0]));
+        assert!(ring.holds([0.0, 2.0]) && !ring.is_empty(), "its rim belongs to it");
+        assert_eq!(ring.bounds(), [[0.0, 4.0]; 2]);
+        assert_eq!([[0.5, 2.0], [2.0, 2.0], [7.0, 8.0]].map(|place| ring.depth(place)), [0.5, -1.0, -5.0]);
+    }
+
+    #[test]
+    fn a_file_may_hold_no_polygon() {
+        assert!(read(r#"{"type":"FeatureCollection","features":[]}"#).is_empty());
+    }
+}
