@@ -310,8 +310,8 @@ impl<const D: usize, S: Model<D>> Run<'_, '_, D, S> {
         let time = self.simulation.time();
         let changes =
             sand.sources.is_moving(time) || sand.sources.changes().iter().any(|change| *change > time);
-        let [u, v, _] = self.simulation.drift();
-        sand.equilibrium.is_some() || (!changes && u < rate && v < rate)
+        let drift = self.simulation.drift();
+        sand.equilibrium.is_some() || (!changes && drift.iter().all(|change| *change < rate))
     }
 
     /// Save what there is before the failed step, which began at `time`, is reported.

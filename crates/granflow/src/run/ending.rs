@@ -34,7 +34,7 @@ impl<const D: usize, S: Model<D>> Run<'_, '_, D, S> {
     pub(super) fn ending(&mut self, stop_reason: StopReason) -> Ending {
         let end = S::maps(&mut self.simulation, self.sand);
         let (simulation, layout) = (&self.simulation, self.simulation.layout());
-        let kept = simulation.maps.as_ref().into_iter().flat_map(Summaries::named);
+        let kept = simulation.maps().into_iter().flat_map(Summaries::named);
         let maps = kept.map(|(name, map)| (name, layout.unpadded(map))).chain(end).collect();
         Ending {
             case: self.work.case.clone(),

@@ -123,10 +123,10 @@ impl<'s, const D: usize, S: Model<D>> Run<'_, 's, D, S> {
             ("at_rest".into(), f64::from(u8::from(simulation.at_rest()))),
         ];
         scalars.extend(simulation.clock().iter().enumerate().map(|(k, v)| (format!("clock_{k}"), *v)));
-        let state = simulation.arrays().parts.iter().enumerate();
+        let state = simulation.arrays().components().iter().enumerate();
         let mut arrays: Vec<(String, Numbers)> =
             state.map(|(k, part)| (format!("state_{k}"), Numbers::Double(part.into()))).collect();
-        if let Some(maps) = &simulation.maps {
+        if let Some(maps) = simulation.maps() {
             arrays.extend(maps.named().map(|(name, map)| (name.to_owned(), Numbers::Single(map))));
         }
         self.writer.checkpoint(&Checkpoint {
@@ -156,21 +156,19 @@ fn restore<const D: usize, S: Kernel<D>>(
 ) -> Option<String> {
     let clock: Vec<f64> = (0..CLOCK).map_while(|k| saved.scalar(&format!("clock_{k}"))).collect();
     let part = |k: usize| saved.take(&format!("state_{k}"));
-    let parts: Vec<Vec<f64>> = (0..simulation.arrays().parts.len()).map_while(part).collect();
+    let parts: Vec<Vec<f64>> = (0..simulation.arrays().components().len()).map_while(part).collect();
     if !simulation.restore(&clock, Field::of(parts)) {
         return Some("its state has another shape".to_owned());
     }
     if saved.scalar("at_rest") == Some(1.0) {
         simulation.sleep_all();
     }
-    if let Some(maps) = &mut simulation.maps {
-        for (name, map) in maps.named_mut() {
-            match saved.take(name) {
-                Some(values) if values.len() == map.len() => {
-                    map.iter_mut().zip(values).for_each(|(kept, value)| *kept = value as f32);
-                }
-                _ => return Some(format!("its map {name} is missing or has another shape")),
+    for (name, map) in simulation.maps_mut() {
+        match saved.take(name) {
+            Some(values) if values.len() == map.len() => {
+                map.iter_mut().zip(values).for_each(|(kept, value)| *kept = value as f32);
             }
+            _ => return Some(format!("its map {name} is missing or has another shape")),
         }
     }
     None

@@ -117,8 +117,8 @@ impl<const D: usize> Sand<D> {
         let mut step = Simulation::new(FIRST_ORDER, self.site.grid(), step, ground, state)
             .expect("a table has a grid, and the scheme takes this step");
         let done = step.advance(f64::INFINITY);
-        let [u, v, _] = step.drift();
-        if done.is_ok() { [u, v] } else { [f64::NAN; 2] }
+        let drift = step.drift();
+        if done.is_ok() { [drift[0], drift[1]] } else { [f64::NAN; 2] }
     }
 
     /// Volume per time that falls over the left, right, bottom and top edges and into holes at the equilibrium.
