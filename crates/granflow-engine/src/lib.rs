@@ -8,8 +8,12 @@ pub mod kernels;
 mod lanes;
 mod observe;
 pub mod simulation;
+mod stepper;
 mod sweep;
 mod tiles;
+mod view;
 
 pub use field::Field;
 pub use observe::Maps;
+pub use stepper::Stepper;
+pub use view::View;
