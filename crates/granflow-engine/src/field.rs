@@ -1,25 +1,28 @@
 //! Cell values as struct of arrays.
 
-use crate::backend::DisjointSlice;
+use crate::disjoint::DisjointSlice;
 use crate::grid::Layout;
 use granflow_model::scheme::Components;
 use rayon::prelude::*;
 use std::marker::PhantomData;
 
-/// One padded array per number of a cell value.
+/// The most components that a value of a cell may have: a state, a ground. (Face states and fluxes may have any number.)
+pub const MAX_COMPONENTS: usize = 16;
+
+/// One padded array for each component of a value of a cell.
 #[derive(Debug, Default)]
 pub struct Field {
-    /// The arrays of the parts in double precision, each [`Layout::len`] long, or 1 where a part is the same in all cells; empty
-    /// where a part is kept in single precision.
-    pub parts: Vec<Vec<f64>>,
-    /// Those of the others; empty where a part is kept in double precision.
+    /// The components in double precision, each [`Layout::len`] numbers long, or 1 where a component is the same in all cells;
+    /// empty where one is kept in single precision.
+    doubles: Vec<Vec<f64>>,
+    /// Those in single precision; empty where a component is kept in double precision.
     singles: Vec<Vec<f32>>,
 }
 
-/// Is a part one of those whose bits are set?
+/// Is a component one of those whose bits are set?
 #[inline(always)]
-pub(crate) const fn has(parts: u32, k: usize) -> bool {
-    parts >> k & 1 == 1
+pub(crate) const fn has(mask: u32, k: usize) -> bool {
+    mask >> k & 1 == 1
 }
 
 /// Bytes that a grid keeps of a value in each cell.
@@ -31,18 +34,37 @@ pub(crate) const fn bytes_per_cell<P: Components<f64>>() -> usize {
 impl Field {
     /// Zeros for values of type `P`.
     pub fn zeros<P: Components<f64>>(layout: &Layout) -> Field {
-        const { assert!(P::COUNT <= MAX && P::F32_MASK & P::UNIFORM_MASK == 0) };
-        let length = |k: usize| if has(P::UNIFORM_MASK, k) { 1 } else { layout.len() };
-        let double = |k: usize| zeros(if has(P::F32_MASK, k) { 0 } else { length(k) });
-        let single = |k: usize| zeros(if has(P::F32_MASK, k) { length(k) } else { 0 });
-        Field { parts: (0..P::COUNT).map(double).collect(), singles: (0..P::COUNT).map(single).collect() }
+        const {
+            assert!(
+                P::COUNT <= MAX_COMPONENTS,
+                "too many components: raise MAX_COMPONENTS in granflow-engine/src/field.rs"
+            );
+            assert!(P::F32_MASK & P::UNIFORM_MASK == 0, "a uniform component is kept in double precision");
+            assert!((P::F32_MASK | P::UNIFORM_MASK) >> P::COUNT == 0, "a mask has bits of no component");
+        };
+        let double = |k: usize| zeros(Self::lengths::<P>(layout, k)[0]);
+        let single = |k: usize| zeros(Self::lengths::<P>(layout, k)[1]);
+        Field { doubles: (0..P::COUNT).map(double).collect(), singles: (0..P::COUNT).map(single).collect() }
     }
-    /// A field of numbers in double precision that were taken from another.
-    pub fn of(parts: Vec<Vec<f64>>) -> Field {
-        Field { singles: vec![Vec::new(); parts.len()], parts }
+    /// How many numbers component `k` has in double and in single precision.
+    fn lengths<P: Components<f64>>(layout: &Layout, k: usize) -> [usize; 2] {
+        let length = if has(P::UNIFORM_MASK, k) { 1 } else { layout.len() };
+        if has(P::F32_MASK, k) { [0, length] } else { [length, 0] }
     }
-    /// The value of every cell, without the ghosts, by its column and row; parts that are the same in all cells are those of the
-    /// first.
+    /// A field of components in double precision that were taken from another.
+    pub fn of(components: Vec<Vec<f64>>) -> Field {
+        Field { singles: vec![Vec::new(); components.len()], doubles: components }
+    }
+    /// The components in double precision, padded; empty where one is kept in single precision.
+    pub fn components(&self) -> &[Vec<f64>] {
+        &self.doubles
+    }
+    /// The arrays of the components in double precision.
+    pub(crate) fn arrays_mut(&mut self) -> impl Iterator<Item = &mut [f64]> {
+        self.doubles.iter_mut().map(Vec::as_mut_slice)
+    }
+    /// The value of every cell, without the ghosts, by its column and row; components that are the same in all cells are
+    /// taken from the first.
     pub(crate) fn fill<P: Components<f64>>(
         &mut self,
         layout: &Layout,
@@ -51,11 +73,12 @@ impl Field {
         if P::UNIFORM_MASK != 0 {
             value(0, 0).store(|k, part| {
                 if has(P::UNIFORM_MASK, k) {
-                    self.parts[k][0] = part;
+                    self.doubles[k][0] = part;
                 }
             });
         }
-        let parts: Vec<DisjointSlice> = self.parts.iter_mut().map(|part| DisjointSlice::new(part)).collect();
+        let doubles: Vec<DisjointSlice> =
+            self.doubles.iter_mut().map(|part| DisjointSlice::new(part)).collect();
         let singles: Vec<DisjointSlice<f32>> =
             self.singles.iter_mut().map(|part| DisjointSlice::new(part)).collect();
         (0..layout.rows).into_par_iter().for_each(|row| {
@@ -67,18 +90,17 @@ impl Field {
                         if has(P::F32_MASK, k) {
                             singles[k].slice(place..place + 1)[0] = part as f32;
                         } else if !has(P::UNIFORM_MASK, k) {
-                            parts[k].slice(place..place + 1)[0] = part;
+                            doubles[k].slice(place..place + 1)[0] = part;
                         }
                     }
                 });
             }
         });
     }
-    /// Is it one for values of type `P` in double precision, of every place?
+    /// Does it hold values of type `P` in every place of the layout?
     pub(crate) fn holds<P: Components<f64>>(&self, layout: &Layout) -> bool {
-        P::F32_MASK | P::UNIFORM_MASK == 0
-            && self.parts.len() == P::COUNT
-            && self.parts.iter().all(|part| part.len() == layout.len())
+        let fits = |k: usize| [self.doubles[k].len(), self.singles[k].len()] == Self::lengths::<P>(layout, k);
+        [self.doubles.len(), self.singles.len()] == [P::COUNT; 2] && (0..P::COUNT).all(fits)
     }
     /// The value at `place`.
     #[inline(always)]
@@ -87,7 +109,7 @@ impl Field {
             if has(P::F32_MASK, k) {
                 f64::from(self.singles[k][place])
             } else {
-                self.parts[k][if has(P::UNIFORM_MASK, k) { 0 } else { place }]
+                self.doubles[k][if has(P::UNIFORM_MASK, k) { 0 } else { place }]
             }
         })
     }
@@ -97,9 +119,9 @@ impl Field {
     /// If they reach beyond the arrays.
     pub fn row<P: Components<f64>>(&self, start: usize, len: usize) -> Row<'_, P> {
         for k in 0..P::COUNT {
-            let there = if has(P::F32_MASK, k) { self.singles[k].len() } else { self.parts[k].len() };
-            let wanted = if has(P::UNIFORM_MASK, k) { 1 } else { start + len };
-            assert!(wanted <= there, "cells beyond their field");
+            let there = if has(P::F32_MASK, k) { self.singles[k].len() } else { self.doubles[k].len() };
+            let end = if has(P::UNIFORM_MASK, k) { Some(1) } else { start.checked_add(len) };
+            assert!(end.is_some_and(|end| end <= there), "cells beyond their field");
         }
         Row { starts: self.starts::<P>(), start, len, owner: PhantomData }
     }
@@ -110,7 +132,7 @@ impl Field {
             if has(P::F32_MASK, k) {
                 self.singles[k][place] = part as f32;
             } else if !has(P::UNIFORM_MASK, k) {
-                self.parts[k][place] = part;
+                self.doubles[k][place] = part;
             }
         });
     }
@@ -126,13 +148,13 @@ impl Field {
             let first = bits(part[first]);
             starts.all(|start| part[start..start + width].iter().all(|value| bits(*value) == first))
         }
-        self.parts.iter().all(|part| uniform(part, f64::to_bits, starts.clone(), width))
+        self.doubles.iter().all(|part| uniform(part, f64::to_bits, starts.clone(), width))
             && self.singles.iter().all(|part| uniform(part, f32::to_bits, starts.clone(), width))
     }
     /// Where the arrays begin, to be read with the precision of `P`.
-    pub(crate) fn starts<P: Components<f64>>(&self) -> [*const u8; MAX] {
+    pub(crate) fn starts<P: Components<f64>>(&self) -> [*const u8; MAX_COMPONENTS] {
         std::array::from_fn(|k| {
-            let double = || self.parts.get(k).map_or(std::ptr::null(), |part| part.as_ptr().cast());
+            let double = || self.doubles.get(k).map_or(std::ptr::null(), |part| part.as_ptr().cast());
             if has(P::F32_MASK, k) { self.singles[k].as_ptr().cast() } else { double() }
         })
     }
@@ -141,7 +163,7 @@ impl Field {
 impl Clone for Field {
     fn clone(&self) -> Self {
         Field {
-            parts: self.parts.iter().map(|part| copy(part)).collect(),
+            doubles: self.doubles.iter().map(|part| copy(part)).collect(),
             singles: self.singles.iter().map(|part| copy(part)).collect(),
         }
     }
@@ -162,7 +184,7 @@ pub(crate) fn zeros<T: Copy + Default>(len: usize) -> Vec<T> {
         const PAGE: usize = 4096;
         let (start, bytes) = (numbers.as_ptr() as usize, size_of_val(numbers.as_slice()));
         let first = start.next_multiple_of(PAGE);
-        // SAFETY: an advice on pages that are wholly in_strip; refused, it changes nothing.
+        // SAFETY: an advice on pages that belong wholly to the array; refused, it changes nothing.
         unsafe {
             libc::madvise(first as *mut _, (start + bytes).saturating_sub(first), libc::MADV_HUGEPAGE);
         }
@@ -170,13 +192,10 @@ pub(crate) fn zeros<T: Copy + Default>(len: usize) -> Vec<T> {
     numbers
 }
 
-/// Most numbers that a cell value has.
-pub(crate) const MAX: usize = 16;
-
 /// Neighbouring places of a field, opened for reading.
 #[derive(Clone, Copy)]
 pub struct Row<'a, P> {
-    starts: [*const u8; MAX],
+    starts: [*const u8; MAX_COMPONENTS],
     start: usize,
     len: usize,
     owner: PhantomData<(&'a Field, P)>,
@@ -188,8 +207,11 @@ impl<P: Components<f64>> Row<'_, P> {
     pub fn get(&self, i: usize) -> P {
         assert!(i < self.len, "a cell beyond its row");
         let place = self.start + i;
-        // SAFETY: `Field::row` found the places in all arrays.
-        P::load(|k| unsafe { read::<P>(self.starts[k], k, place) })
+        P::load(|k| {
+            assert!(k < P::COUNT);
+            // SAFETY: `Field::row` found the places in all arrays.
+            unsafe { read::<P>(self.starts[k], k, place) }
+        })
     }
 }
 

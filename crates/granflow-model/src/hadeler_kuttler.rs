@@ -15,8 +15,8 @@ pub mod exact;
 pub mod scheme;
 pub mod table;
 
-use crate::real::{Real, for_axis, per_axis};
-use crate::scheme::Components;
+use crate::real::Real;
+use crate::scheme::{Components, components};
 
 /// The unknowns of a cell: u at its node with the smallest coordinates, v in the cell.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -57,41 +57,8 @@ impl<const D: usize, R: Real> Ground<D, R> {
     }
 }
 
-impl<R: Real> Components<R> for Pile<R> {
-    const COUNT: usize = 2;
-    #[inline(always)]
-    fn load(part: impl Fn(usize) -> R) -> Self {
-        Pile { u: part(0), v: part(1) }
-    }
-    #[inline(always)]
-    fn store(self, mut put: impl FnMut(usize, R)) {
-        put(0, self.u);
-        put(1, self.v);
-    }
-}
+components!([R: Real] Pile<R> { u: R, v: R });
 
-impl<const D: usize, R: Real> Components<R> for Ground<D, R> {
-    const COUNT: usize = 4 + 2 * D;
-    #[inline(always)]
-    fn load(part: impl Fn(usize) -> R) -> Self {
-        Ground {
-            bed: part(0),
-            inside: part(1),
-            weight: part(2),
-            hole: part(3),
-            source: per_axis!(k => part(4 + k)),
-            wall: per_axis!(k => part(4 + D + k)),
-        }
-    }
-    #[inline(always)]
-    fn store(self, mut put: impl FnMut(usize, R)) {
-        put(0, self.bed);
-        put(1, self.inside);
-        put(2, self.weight);
-        put(3, self.hole);
-        for_axis!(axis in D => {
-            put(4 + axis, self.source[axis]);
-            put(4 + D + axis, self.wall[axis]);
-        });
-    }
-}
+components!([const D: usize, R: Real] Ground<D, R> {
+    bed: R, inside: R, weight: R, hole: R, source: [R; D], wall: [R; D]
+});

@@ -26,6 +26,8 @@ pub fn minmod<R: Real>(a: R, b: R) -> R {
 /// 0.5007, with 1 0.5006.
 #[inline(always)]
 pub fn central<R: Real>(lo: R, hi: R) -> R {
-    let [rise, fall] = smaller(lo, hi).map(|slope| slope * R::splat(1.5));
+    // Not by `map`: a function in between may stay one, and is then not computed on lanes.
+    let ([rise, fall], factor) = (smaller(lo, hi), R::splat(1.5));
+    let (rise, fall) = (rise * factor, fall * factor);
     ((lo + hi) * R::splat(0.5)).min(rise).max(fall)
 }

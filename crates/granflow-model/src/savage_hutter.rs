@@ -13,7 +13,7 @@ pub mod ground;
 pub mod kinetic;
 
 use crate::real::{Real, for_axis, per_axis, total};
-use crate::scheme::{Components, Diagnostics};
+use crate::scheme::{Diagnostics, components};
 use ground::Bed;
 
 /// A depth below the smallest normal number is none: subnormal numbers round by as much as they hold.
@@ -88,21 +88,4 @@ impl<const D: usize, R: Real> Flow<D, R> {
     }
 }
 
-impl<const D: usize, R: Real> Components<R> for Flow<D, R> {
-    const COUNT: usize = 1 + D;
-    #[inline(always)]
-    fn load(part: impl Fn(usize) -> R) -> Self {
-        let mut flow = Flow::still(part(0));
-        for_axis!(axis in D => {
-            flow.q[axis] = part(1 + axis);
-        });
-        flow
-    }
-    #[inline(always)]
-    fn store(self, mut put: impl FnMut(usize, R)) {
-        put(0, self.h);
-        for_axis!(axis in D => {
-            put(1 + axis, self.q[axis]);
-        });
-    }
-}
+components!([const D: usize, R: Real] Flow<D, R> { h: R, q: [R; D] });

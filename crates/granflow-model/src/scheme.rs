@@ -59,13 +59,13 @@ impl<R: Real, P: Components<R>, const N: usize> Components<R> for [P; N] {
     }
 }
 
-/// Implements [`Components`] for a struct, field by field; the fields of the second list are masks, kept as 1 and 0.
+/// Implements [`Components`] for a struct, field by field in the order of the list, whatever their order in the struct:
+/// `components!([const D: usize, R: Real] Flow<D, R> { h: R, q: [R; D] });`
 #[macro_export]
 macro_rules! components {
-    ([$($generics:tt)*] $name:ty { $($field:ident: $kind:ty),* } masks { $($mask:ident),* }) => {
+    ([$($generics:tt)*] $name:ty { $($field:ident: $kind:ty),* $(,)? }) => {
         impl<$($generics)*> $crate::scheme::Components<R> for $name {
-            const COUNT: usize =
-                0 $(+ <$kind as $crate::scheme::Components<R>>::COUNT)* $(+ { stringify!($mask); 1 })*;
+            const COUNT: usize = 0 $(+ <$kind as $crate::scheme::Components<R>>::COUNT)*;
             #[inline(always)]
             #[allow(unused_assignments, unused_mut, unused_variables, reason = "the last field moves on as the others do")]
             fn load(part: impl Fn(usize) -> R) -> Self {
@@ -75,11 +75,7 @@ macro_rules! components {
                     next += <$kind as $crate::scheme::Components<R>>::COUNT;
                     let $field = <$kind as $crate::scheme::Components<R>>::load(#[inline(always)] |k| part(from + k));
                 )*
-                $(
-                    let $mask = R::zero().lt(part(next));
-                    next += 1;
-                )*
-                Self { $($field,)* $($mask,)* }
+                Self { $($field),* }
             }
             #[inline(always)]
             #[allow(unused_assignments, unused_mut, unused_variables, reason = "the last field moves on as the others do")]
@@ -89,10 +85,6 @@ macro_rules! components {
                     let from = next;
                     next += <$kind as $crate::scheme::Components<R>>::COUNT;
                     <$kind as $crate::scheme::Components<R>>::store(self.$field, #[inline(always)] |k, value| put(from + k, value));
-                )*
-                $(
-                    put(next, R::select(self.$mask, R::splat(1.0), R::zero()));
-                    next += 1;
                 )*
             }
         }

@@ -120,9 +120,9 @@ mod tests {
                 load.step().unwrap();
             }
             let totals = load.run.totals();
-            let (counts, moved) = ((totals.moving, totals.wet), load.run.arrays().parts.clone());
+            let (counts, moved) = ((totals.moving, totals.wet), load.run.arrays().components().to_vec());
             load.restart().unwrap();
-            assert_eq!(load.run.arrays().parts, load.start.parts);
+            assert_eq!(load.run.arrays().components(), load.start.components());
             (counts, moved)
         };
         let first = go();

@@ -13,6 +13,7 @@ use granflow::savage_hutter::kinetic::{VERFAHREN_1, VERFAHREN_2, VERFAHREN_3, VE
 use granflow::scheme::{Boundary, Cell, Components, Faces, Spacing, Stencil};
 use granflow::simulation::{Failure, SimdLevel, Simulation, StepSize};
 use granflow::site::Site;
+use granflow_engine::Field;
 use proptest::prelude::*;
 use support::{Dice, ORDERS, Order, Surface, alone, grid, lost, plane, run, states, steps, terrain};
 
@@ -570,9 +571,9 @@ fn finds_what_is_no_number<const D: usize, S: Kernel<D>>(
             let mut run = build();
             run.use_simd(instructions);
             assert!(run.advance(f64::INFINITY).is_ok(), "{name}");
-            let mut arrays = run.arrays().clone();
-            arrays.parts[part][run.place(cell)] = bad;
-            run.restore(&run.clock(), arrays);
+            let mut arrays = run.arrays().components().to_vec();
+            arrays[part][run.place(cell)] = bad;
+            run.restore(&run.clock(), Field::of(arrays));
             let failure = run.advance(f64::INFINITY).expect_err(name);
             // No step is short enough for a speed that is infinite from the start.
             let found = matches!(failure, Failure::NotFinite { .. }) || bad == f64::INFINITY;

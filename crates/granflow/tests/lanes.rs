@@ -25,7 +25,7 @@ fn bits<const D: usize, S: Kernel<D>>(run: &Simulation<D, S>) -> Vec<u64> {
     numbers.extend([totals.wet, totals.moving].map(|count| count as f64));
     numbers.extend(run.out());
     numbers.extend(run.drift());
-    for (_, map) in run.maps.as_ref().expect("kept from the start").named() {
+    for (_, map) in run.maps().expect("kept from the start").named() {
         numbers.extend(map.iter().copied().map(f64::from));
     }
     numbers.iter().map(|number| number.to_bits()).collect()

@@ -1,6 +1,6 @@
 //! Why a simulation cannot be made, or cannot go on.
 
-use super::StepSize;
+use super::step_size::StepSize;
 use crate::grid::Grid;
 
 /// Why a simulation cannot be made.

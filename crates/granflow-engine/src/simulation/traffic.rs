@@ -1,6 +1,6 @@
 //! What a run takes of the memory, and what a step asks of it at least.
 
-use super::Simulation;
+use super::state::Simulation;
 use crate::field::bytes_per_cell;
 use crate::observe::Maps;
 use granflow_model::scheme::Scheme;

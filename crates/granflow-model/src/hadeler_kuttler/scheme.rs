@@ -79,7 +79,7 @@ pub struct Halves<const D: usize, R> {
     /// Theta of the cell, 1 beside the table.
     theta: R,
 }
-components!([const D: usize, R: Real] Halves<D, R> { v: [R; D], slope: [R; D], edge: [R; D], theta: R } masks {});
+components!([const D: usize, R: Real] Halves<D, R> { v: [R; D], slope: [R; D], edge: [R; D], theta: R });
 
 impl<const D: usize, R: Real> CellSlopes<D, R> for Halves<D, R> {
     #[inline(always)]
@@ -112,21 +112,17 @@ impl SlopeStorage for Limited<true> {
 /// Where a cell and its lower left node lie. A number, so that a few can be asked at once: 0 is on the table, the node free
 /// to rise.
 #[derive(Clone, Copy, Debug)]
-struct CellClass<R>(R);
-
-impl<R: Real> Components<R> for CellClass<R> {
-    const COUNT: usize = 1;
-    #[inline(always)]
-    fn load(part: impl Fn(usize) -> R) -> Self {
-        CellClass(part(0))
-    }
-    #[inline(always)]
-    fn store(self, mut put: impl FnMut(usize, R)) {
-        put(0, self.0);
-    }
+struct CellClass<R> {
+    code: R,
 }
 
+components!([R: Real] CellClass<R> { code: R });
+
 impl<R: Real> CellClass<R> {
+    #[inline(always)]
+    fn new(code: R) -> Self {
+        CellClass { code }
+    }
     const PINNED: f64 = 1.0;
     const OUTSIDE: f64 = 2.0;
 
@@ -134,16 +130,16 @@ impl<R: Real> CellClass<R> {
     fn of<const D: usize>(ground: &Ground<D, R>) -> Self {
         let zero = R::zero();
         let outside = R::select(zero.lt(ground.inside), zero, R::splat(Self::OUTSIDE));
-        CellClass(outside + R::select(zero.lt(ground.weight), zero, R::splat(Self::PINNED)))
+        CellClass::new(outside + R::select(zero.lt(ground.weight), zero, R::splat(Self::PINNED)))
     }
     #[inline(always)]
     fn inside(self) -> R::Mask {
-        self.0.lt(R::splat(Self::OUTSIDE))
+        self.code.lt(R::splat(Self::OUTSIDE))
     }
     /// The lower left node is free to rise.
     #[inline(always)]
     fn free(self) -> R::Mask {
-        self.0.equals(R::zero()) | self.0.equals(R::splat(Self::OUTSIDE))
+        self.code.equals(R::zero()) | self.code.equals(R::splat(Self::OUTSIDE))
     }
 }
 
@@ -165,7 +161,7 @@ pub struct FaceStates<const D: usize, R: Real, S = Halves<D, R>> {
 }
 components!([const D: usize, R: Real, S: CellSlopes<D, R>] FaceStates<D, R, S> {
     v: R, slope: [R; D], edge: [R; D], poured: [R; D], wall: [R; D], place: CellClass<R>, slopes: S
-} masks {});
+});
 
 /// The two ends of a cell along an axis.
 #[derive(Clone, Copy)]
@@ -386,7 +382,7 @@ fn flux<const D: usize, R: Real, S: CellSlopes<D, R>>(
     lean = R::select(size.lt(R::splat(LEVEL)), zero, lean);
     let poured = ((poured_b - poured_a) + lean * (poured_b + poured_a)) * R::splat(0.5);
     let within = (b.positive_part() * v_b + a.min(zero) * v_a) + poured;
-    let rim = (left.place.0 + right.place.0) + right.wall[axis];
+    let rim = (left.place.code + right.place.code) + right.wall[axis];
     if !R::any(!rim.equals(zero)) {
         return within;
     }
@@ -423,9 +419,9 @@ fn corner<const D: usize, R: Real, S: CellSlopes<D, R>>(around: [[&FaceStates<D,
         let under = begins.edge_at(axis, End::Lo, begins_beside);
         steep[axis] = [over.positive_part(), (-under).positive_part()];
     });
-    let mut rim = above_right.place.0;
+    let mut rim = above_right.place.code;
     for_axis!(x in TWO => {
-        rim = rim + (around[0][x].place.0 + around[1][x].place.0);
+        rim = rim + (around[0][x].place.code + around[1][x].place.code);
     });
     let plain = !R::any(!rim.equals(zero));
     let mut most = R::splat(f64::NEG_INFINITY);

@@ -84,7 +84,7 @@ pub struct Slope<const D: usize, R> {
     h: R,
     u: [R; D],
 }
-components!([const D: usize, R: Real] Slope<D, R> { h: R, u: [R; D] } masks {});
+components!([const D: usize, R: Real] Slope<D, R> { h: R, u: [R; D] });
 
 impl<const D: usize, R: Real> CellSlopes<D, R> for Slope<D, R> {
     #[inline(always)]
@@ -140,25 +140,22 @@ pub struct FaceStates<const D: usize, R: Real, P, T> {
 }
 components!([const D: usize, R: Real, P: Components<R>, T: Components<R>] FaceStates<D, R, P, T> {
     h: R, u: [R; D], slopes: [P; D], half: [[Half<R>; 2]; D], plane: T, class: CellClass<R>
-} masks {});
+});
 
 /// Is a cell, or one of the two cells of a face, bare or held? A number, so that a few can be asked at once: 0 is open.
 #[derive(Clone, Copy, Debug)]
-struct CellClass<R>(R);
-
-impl<R: Real> Components<R> for CellClass<R> {
-    const COUNT: usize = 1;
-    #[inline(always)]
-    fn load(part: impl Fn(usize) -> R) -> Self {
-        CellClass(part(0))
-    }
-    #[inline(always)]
-    fn store(self, mut put: impl FnMut(usize, R)) {
-        put(0, self.0);
-    }
+struct CellClass<R> {
+    code: R,
 }
 
+components!([R: Real] CellClass<R> { code: R });
+
 impl<R: Real> CellClass<R> {
+    #[inline(always)]
+    fn new(code: R) -> Self {
+        CellClass { code }
+    }
+
     /// Dry, or a film, or outside: takes what comes, gives nothing.
     const DRY: f64 = 1.0;
     /// Holds itself: thick, q = 0, and the pull is within the static bound.
@@ -166,25 +163,25 @@ impl<R: Real> CellClass<R> {
 
     #[inline(always)]
     fn dry(dry: R::Mask) -> Self {
-        CellClass(R::select(dry, R::splat(Self::DRY), R::zero()))
+        CellClass::new(R::select(dry, R::splat(Self::DRY), R::zero()))
     }
     #[inline(always)]
     fn held(self, held: R::Mask) -> Self {
-        CellClass(R::select(held, R::splat(Self::HELD), self.0))
+        CellClass::new(R::select(held, R::splat(Self::HELD), self.code))
     }
     #[inline(always)]
     fn and(self, other: Self) -> Self {
-        CellClass(self.0 + other.0)
+        CellClass::new(self.code + other.code)
     }
     /// Both cells of the face, or this one, are open.
     #[inline(always)]
     fn is_open(self) -> R::Mask {
-        self.0.equals(R::zero())
+        self.code.equals(R::zero())
     }
     /// This cell, or one of the two, is held.
     #[inline(always)]
     fn is_held(self) -> R::Mask {
-        R::splat(Self::HELD).le(self.0)
+        R::splat(Self::HELD).le(self.code)
     }
 }
 
@@ -214,7 +211,7 @@ pub struct Flux<const D: usize, R: Real> {
 }
 components!([const D: usize, R: Real] Flux<D, R> {
     mass: R, left: [R; D], right: [R; D], class: CellClass<R>
-} masks {});
+});
 
 /// PotentialJump of the free surface's potential towards both neighbours of an axis.
 struct PotentialJump<R> {
@@ -609,7 +606,7 @@ where
             let lost: [R; D] = per_axis!(axis => lambda[axis] * (faces[axis].hi.left[k] - faces[axis].lo.right[k]));
             total(lost)
         });
-        let gates: [R; D] = per_axis!(axis => faces[axis].lo.class.0 + faces[axis].hi.class.0);
+        let gates: [R; D] = per_axis!(axis => faces[axis].lo.class.code + faces[axis].hi.class.code);
         let open = total(gates).equals(zero);
         let all_open = !R::any(!open);
         let mut at_rest_or_dry = None;

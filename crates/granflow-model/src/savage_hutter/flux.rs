@@ -16,7 +16,7 @@ pub struct Half<R> {
     pub push: R,
 }
 
-components!([R: Real] Half<R> { mass: R, push: R } masks {});
+components!([R: Real] Half<R> { mass: R, push: R });
 
 impl<R: Real> Half<R> {
     /// Nothing.

@@ -93,26 +93,7 @@ pub struct Chute<const D: usize, R> {
     pub curvature: R,
 }
 
-impl<const D: usize, R: Real> Components<R> for Chute<D, R> {
-    const COUNT: usize = D + 3;
-    #[inline(always)]
-    fn load(part: impl Fn(usize) -> R) -> Self {
-        let mut tilt = [R::zero(); D];
-        for_axis!(axis in D => {
-            tilt[axis] = part(axis);
-        });
-        Chute { tilt, beta: part(D), cos: part(D + 1), curvature: part(D + 2) }
-    }
-    #[inline(always)]
-    fn store(self, mut put: impl FnMut(usize, R)) {
-        for_axis!(axis in D => {
-            put(axis, self.tilt[axis]);
-        });
-        put(D, self.beta);
-        put(D + 1, self.cos);
-        put(D + 2, self.curvature);
-    }
-}
+components!([const D: usize, R: Real] Chute<D, R> { tilt: [R; D], beta: R, cos: R, curvature: R });
 
 impl<const D: usize, R: Real> Bed<D, R> for Chute<D, R> {
     type On<L: Real> = Chute<D, L>;
@@ -260,6 +241,7 @@ impl Terrain<2, f64> {
     }
 }
 
+/// By hand, for the curvature is kept as a triangle, and most of it in single precision.
 impl<const D: usize, R: Real> Components<R> for Terrain<D, R> {
     const COUNT: usize = 3 + D + D * (D + 1) / 2;
     const UNIFORM_MASK: u32 = 1 << (Self::COUNT - 1);
@@ -298,7 +280,7 @@ pub struct Tangent<const D: usize, R> {
     /// c^2
     square: R,
 }
-components!([const D: usize, R: Real] Tangent<D, R> { slope: [R; D], square: R } masks {});
+components!([const D: usize, R: Real] Tangent<D, R> { slope: [R; D], square: R });
 
 /// 1/sqrt(1 - t) for t in \[0, 1): a series without roots and divisions up to t = 1/32, planes at 10 degrees to each other.
 #[inline(always)]

@@ -104,7 +104,7 @@ pub struct FaceStates<const D: usize, R> {
     beta: R,
 }
 
-components!([const D: usize, R: Real] FaceStates<D, R> { h: R, u: [R; D], halves: [[Half<R>; 2]; D], beta: R } masks {});
+components!([const D: usize, R: Real] FaceStates<D, R> { h: R, u: [R; D], halves: [[Half<R>; 2]; D], beta: R });
 
 impl Kinetic {
     /// What a cell offers to its faces under a face depth.
