@@ -4,9 +4,9 @@ use std::io::{self, Write};
 use std::path::Path;
 use std::process::ExitCode;
 
+use granflow::StartError;
 use granflow::case::{CaseError, CaseErrorKind};
 use granflow::results::FilesError;
-use granflow::StartError;
 use granflow::session::RunError;
 use granflow::sinks::BeginError;
 
@@ -84,7 +84,9 @@ impl From<StartError> for Failure {
             StartError::Case(error) => error.into(),
             StartError::Raster(_) | StartError::Release(_) => Self::File(error.to_string()),
             StartError::Build(_) => Self::Computation(error.to_string()),
-            StartError::Feature { .. } => Self::usage(error.to_string(), "cargo build with default features has all"),
+            StartError::Feature { .. } => {
+                Self::usage(error.to_string(), "cargo build with default features has all")
+            }
         }
     }
 }

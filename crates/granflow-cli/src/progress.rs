@@ -39,13 +39,13 @@ impl Status {
 
     /// One line of words and numbers; `elapsed` is the wall time since `begin`, the share at the start.
     fn line(&self, begin: f64, elapsed: Duration) -> String {
-        let Self { time, end, step, wet_cells, fastest, words: Words { cells, fastest: name } } = self;
+        let Self { time, end, step, wet_cells, fastest, words: Words { wet, fastest: name } } = self;
         let end = end.map(|end| format!(" of {end:.4}")).unwrap_or_default();
         let left = self
             .left(begin, elapsed)
             .map(|left| format!(", at most {} left", duration(left)))
             .unwrap_or_default();
-        format!("time {time:.4}{end}, step {step}, {wet_cells} {cells}, {name} {fastest:.3e}{left}")
+        format!("time {time:.4}{end}, step {step}, {wet_cells} {wet}, {name} {fastest:.3e}{left}")
     }
 
     /// Wall time left if the rest goes as fast as what was done.
@@ -151,12 +151,13 @@ fn tell(text: &str) {
 mod tests {
     use super::*;
 
-    const FLOW: Words = Words { cells: "wet cells", fastest: "speed" };
-    const SAND: Words = Words { cells: "cells with sand", fastest: "rolling layer at most" };
+    const FLOW: Words = Words { wet: "wet cells", fastest: "speed" };
+    const SAND: Words = Words { wet: "cells with sand", fastest: "rolling layer at most" };
 
     #[test]
     fn the_line_says_where_the_run_is() {
-        let status = Status { time: 2.5, end: Some(10.0), step: 250, wet_cells: 40, fastest: 1.25, words: FLOW };
+        let status =
+            Status { time: 2.5, end: Some(10.0), step: 250, wet_cells: 40, fastest: 1.25, words: FLOW };
         let line = status.line(0.0, Duration::from_secs(30));
         assert_eq!(
             line,

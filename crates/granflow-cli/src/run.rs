@@ -3,15 +3,15 @@
 use std::num::NonZeroUsize;
 use std::path::{Path, PathBuf};
 
+use granflow::Checked;
 use granflow::output::summary::StopReason;
 use granflow::results::{FILM_SHARE, Finished};
 use granflow::run::Run;
 use granflow::session::Options;
-use granflow::Checked;
 
 use crate::failure::{Failure, print};
 use crate::interrupt;
-use crate::progress::{Progress, Status};
+use crate::progress::Progress;
 
 /// What the command line says about a run.
 #[derive(Debug, Clone, Default)]

@@ -133,14 +133,6 @@ fn laid(layer: Layer, thickness: &Thickness, template: &Raster) -> Result<Sparse
     }
 }
 
-/// All polygons of a shapefile or GeoJSON file; where they overlap, each stands for itself.
-///
-/// # Errors
-/// [`ReleaseError`] for unreadable files, other shapes than polygons, rings that cross themselves.
-pub fn outlines(path: &Path) -> Result<Vec<Polygon>, ReleaseError> {
-    Layer::read(path)?.outlines()
-}
-
 /// Thickness per cell \[m\] of a raster, carried to the grid of `template` by area, so that the sum of h * cell^2 stays.
 ///
 /// Nodata of the raster is no material.

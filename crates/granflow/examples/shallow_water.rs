@@ -286,7 +286,10 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let off = recording.plane.x.iter().zip(end).map(|(&x, h)| (h - exact.flow(x, 5.0).h).abs());
     let error = off.sum::<f64>() * 0.1 / 50.0;
     let out: f64 = run.stepper().outflow().iter().sum();
-    println!("dam break: mean error {error:.4} m, mass error {:e}", (run.totals().volume + out) / volume - 1.0);
+    println!(
+        "dam break: mean error {error:.4} m, mass error {:e}",
+        (run.totals().volume + out) / volume - 1.0
+    );
     assert!(error < 0.02 && ((run.totals().volume + out) / volume - 1.0).abs() < 1e-13);
 
     let file = std::env::temp_dir().join("dam_break.nc");

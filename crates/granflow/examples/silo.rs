@@ -7,7 +7,11 @@ use granflow::build::{Avalanche, Grid};
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     let column = |[x]: [f64; 1]| if x.abs() < 1.0 { 2.3 } else { 0.3 };
     let floor = Grid::line([-6.0, 6.0], 240);
-    let mut run = Avalanche::on_plane(floor, 0.0).scaled(0.4).mu(18_f64.to_radians().tan()).thickness(column).start()?;
+    let mut run = Avalanche::on_plane(floor, 0.0)
+        .scaled(0.4)
+        .mu(18_f64.to_radians().tan())
+        .thickness(column)
+        .start()?;
     let volume = run.totals().volume;
     for time in [0.0, 0.5, 1.0, 2.0] {
         run.until(time)?;

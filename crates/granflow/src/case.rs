@@ -1,5 +1,7 @@
 //! The case file of a run: what [`granflow_case`] reads, joined with the files of the world and the models.
 
+#[cfg(feature = "geo")]
+use crate::disk::Disk;
 use crate::registry;
 use crate::run::Run;
 pub use granflow_case::*;
@@ -57,7 +59,9 @@ impl Case {
     /// # Errors
     /// [`CaseError`] for the first thing that is wrong; its kind is `File` where a file cannot be read.
     pub fn check(&self) -> Result<Checked, CaseError> {
-        self.0.check(&OnDisk).map(Checked)
+        #[cfg(not(feature = "geo"))]
+        use granflow_case::NoFiles as Disk;
+        self.0.check(&Disk).map(Checked)
     }
 }
 
@@ -126,41 +130,5 @@ impl From<granflow_geo::raster::RasterError> for StartError {
 impl From<granflow_geo::release::ReleaseError> for StartError {
     fn from(error: granflow_geo::release::ReleaseError) -> Self {
         StartError::Release(Box::new(error))
-    }
-}
-
-/// Reads the polygons that a case names.
-struct OnDisk;
-
-#[cfg(feature = "geo")]
-impl Files for OnDisk {
-    fn outlines(&self, path: &Path) -> Result<Box<dyn Outline>, String> {
-        let read = granflow_geo::release::Outlines::read(path).map_err(|error| error.to_string())?;
-        Ok(Box::new(Polygons(read)))
-    }
-}
-
-#[cfg(not(feature = "geo"))]
-impl Files for OnDisk {
-    fn outlines(&self, _path: &Path) -> Result<Box<dyn Outline>, String> {
-        Err("polygons need granflow's feature `geo`".to_owned())
-    }
-}
-
-/// Polygons from a file as a region of a case.
-#[cfg(feature = "geo")]
-#[derive(Debug)]
-struct Polygons(granflow_geo::release::Outlines);
-
-#[cfg(feature = "geo")]
-impl Outline for Polygons {
-    fn holds(&self, place: [f64; 2]) -> bool {
-        self.0.holds(place)
-    }
-    fn depth(&self, place: [f64; 2]) -> f64 {
-        self.0.depth(place)
-    }
-    fn bounds(&self) -> [[f64; 2]; 2] {
-        self.0.bounds()
     }
 }

@@ -66,6 +66,8 @@
 pub mod build;
 pub mod case;
 pub mod describe;
+#[cfg(feature = "geo")]
+mod disk;
 pub mod model;
 pub mod models;
 pub mod output;
@@ -81,6 +83,7 @@ pub use granflow_engine::{grid, kernels, simulation};
 #[cfg(feature = "geo")]
 pub use granflow_geo::{raster, release, terrain};
 pub use granflow_model::{hadeler_kuttler, limiter, real, savage_hutter, scheme, time};
+pub use model::Words;
 
 /// The README's library example is a test.
 #[cfg(doctest)]

@@ -1,9 +1,9 @@
 //! The models that a case can ask for: one line for each kind of case, nothing else knows them.
 
-use crate::models::{hadeler_kuttler, savage_hutter};
-use crate::run::Run;
 use crate::StartError;
 use crate::describe::Line;
+use crate::models::{hadeler_kuttler, savage_hutter};
+use crate::run::Run;
 use granflow_case::{Kind, RunPlan};
 
 /// The run of a checked case.

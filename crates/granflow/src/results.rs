@@ -19,7 +19,7 @@ pub use files::check_kinds;
 #[cfg(feature = "figures")]
 pub use story::Story;
 
-use crate::case::{Case, FileKind};
+use crate::case::FileKind;
 use crate::output;
 use crate::output::frames::Frames;
 use crate::output::ledger::Entry;
@@ -55,25 +55,6 @@ pub struct Finished {
 }
 
 impl Finished {
-    /// Put together what a run leaves, with the maps and figures that follow from others, of a mass that is a film below
-    /// the first of two numbers and whose density is the second.
-    #[must_use]
-    pub fn new(
-        case: &RunPlan,
-        [film, density]: [f64; 2],
-        directory: PathBuf,
-        plane: Plane,
-        frames: Frames,
-        ledger: Vec<Entry>,
-        mut maps: Maps,
-        mut summary: Summary,
-    ) -> Finished {
-        plane.derive(&mut maps, &mut summary);
-        let (files, film) = (case.files(), case.scheme.film());
-        let (case, case_text) = (case.text(), case.text());
-        Finished { directory, files, case, case_text, plane, frames, ledger, maps, film, summary }
-    }
-
     /// A map by its name.
     #[must_use]
     pub fn map(&self, name: &str) -> Option<&[f64]> {

@@ -5,13 +5,14 @@
 //! steps a run to one of its [`Ends`] and lets [sinks](crate::sinks) look on.
 
 mod drive;
+mod field_view;
 mod frames;
 mod record;
 mod saved;
 mod simulated;
-mod field_view;
 
 pub use drive::{DriveError, drive};
+pub use field_view::FieldView;
 pub use frames::Frames;
 pub(crate) use frames::after;
 pub use granflow_case::{Ends, Until};
@@ -19,14 +20,13 @@ pub use granflow_engine::simulation::{Failure, Totals};
 pub use record::Record;
 pub use saved::Saved;
 pub use simulated::{CellOf, Field, Numbers, Physics, Simulated, Value};
-pub use field_view::FieldView;
 
-use crate::model::Plane;
 pub use crate::model::Maps;
-use granflow_engine::simulation::Stepper;
+use crate::model::Plane;
+use granflow_engine::Stepper;
 
 /// A run under way.
-pub trait Run: Send {
+pub trait Run: Send + Sync {
     /// Where the cells are, and on what; while a run computes the elevation of its bed is held by the engine alone, see
     /// [`Run::place`].
     fn plane(&self) -> &Plane;

@@ -1,7 +1,6 @@
 //! From a case to its files: what the program `granflow run` does, as a function.
 
 use crate::output;
-use crate::output::summary::StopReason;
 use crate::results::{FilesError, Finished};
 use crate::run::{DriveError, Failure, Run, drive};
 use crate::sinks::{BeginError, Callback, Files, Sink, Stop};

@@ -4,8 +4,8 @@
 use granflow::hadeler_kuttler::exact;
 use granflow::hadeler_kuttler::scheme::{ADAPTIVE, FIRST_ORDER, HadelerKuttler, SECOND_ORDER, Slopes};
 use granflow::hadeler_kuttler::table::Table;
+use granflow::models::hadeler_kuttler::run::site::Site;
 use granflow::simulation::{Simulation, StepSize};
-use granflow::site::Site;
 
 const F: f64 = 0.5;
 const LAMBDA: f64 = 0.45;

@@ -6,6 +6,7 @@ mod figures;
 mod history;
 #[cfg(feature = "figures")]
 mod pictures;
+pub mod run;
 mod table;
 
 pub use table::TableDomain;

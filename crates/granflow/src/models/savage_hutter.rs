@@ -8,6 +8,7 @@ mod maps;
 mod path;
 #[cfg(feature = "figures")]
 mod pictures;
+pub mod run;
 #[cfg(feature = "geo")]
 mod terrain;
 

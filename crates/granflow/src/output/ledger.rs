@@ -2,6 +2,7 @@
 
 use super::{Error, whole_file};
 use crate::real::CompensatedSum;
+use crate::run::{Run, Totals};
 use std::fs::{self, OpenOptions};
 use std::io::Write;
 use std::path::{Path, PathBuf};
@@ -81,6 +82,24 @@ pub struct Entry {
 }
 
 impl Entry {
+    /// The line of a run as it stands.
+    pub fn of(run: &mut dyn Run) -> Entry {
+        let totals = run.take_totals();
+        let speeds = |value: f64| if run.has_speed() { value } else { f64::NAN };
+        Entry {
+            time: run.time(),
+            step: run.steps(),
+            mass: totals.volume,
+            mass_in: run.stepper().poured(),
+            out: run.stepper().outflow(),
+            mass_error: mass_error(run, &totals),
+            wet_cells: totals.wet as u64,
+            moving_cells: totals.moving as u64,
+            max_speed: speeds(totals.speed),
+            kinetic_energy: speeds(totals.energy),
+        }
+    }
+
     /// All that left: the sum over the sides and nodata.
     #[must_use]
     pub fn mass_out(&self) -> f64 {
@@ -228,6 +247,14 @@ impl Ledger {
             self.entries.iter().try_for_each(|entry| out.write_all(entry.line().as_bytes()))
         })
     }
+}
+
+/// (volume + left - initial - poured)/(initial + poured), and 0 of nothing.
+pub fn mass_error(run: &dyn Run, totals: &Totals) -> f64 {
+    let (gone, poured, initial) =
+        (sum(run.stepper().outflow()), run.stepper().poured(), run.record().initial);
+    let whole = initial + poured;
+    if whole == 0.0 { 0.0 } else { (totals.volume + gone - initial - poured) / whole }
 }
 
 /// The sum of `values` in their order, with Neumaier's compensation: its error does not grow with their number.

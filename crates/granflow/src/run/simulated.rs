@@ -1,10 +1,11 @@
 //! A simulation of the engine as a [`Run`]: what a model adds to its scheme is its [`Physics`].
 
-use super::{Failure, Maps, Record, Run, Saved, Totals, FieldView};
+use super::{Failure, FieldView, Maps, Record, Run, Saved, Totals};
 use crate::model::Plane;
+use granflow_engine::Stepper;
 use granflow_engine::grid::Layout;
 use granflow_engine::kernels::Kernel;
-use granflow_engine::simulation::{Simulation, Stepper};
+use granflow_engine::simulation::Simulation;
 use granflow_model::scheme::{Cell, Scheme};
 use std::borrow::Cow;
 use std::time::{Duration, Instant};
@@ -34,7 +35,7 @@ pub struct Field<const D: usize, S: Scheme<D, f64>> {
 pub type Numbers = Vec<(String, f64)>;
 
 /// What a model adds to its scheme to be run and shown.
-pub trait Physics<const D: usize>: Send + 'static {
+pub trait Physics<const D: usize>: Send + Sync + 'static {
     /// The scheme.
     type Scheme: Kernel<D>;
     /// Its name, as the case file writes it.
@@ -121,7 +122,7 @@ impl<const D: usize, P: Physics<D>> Simulated<D, P> {
         let [_, columns] = self.shape(field);
         match field.value {
             Value::Component(k) => {
-                let part = &self.simulation.arrays().parts[k];
+                let part = &self.simulation.arrays().components()[k];
                 let layout = self.simulation.layout();
                 let (mut number, mut rest) = (from, values);
                 while !rest.is_empty() {
@@ -193,7 +194,7 @@ impl<const D: usize, P: Physics<D>> Run for Simulated<D, P> {
         let field = &self.fields[number];
         let (shape, layout) = (self.shape(field), self.simulation.layout());
         if let (Value::Component(k), false) = (&field.value, self.physics.blanks()) {
-            let values = Cow::Borrowed(self.simulation.arrays().parts[*k].as_slice());
+            let values = Cow::Borrowed(self.simulation.arrays().components()[*k].as_slice());
             return Some(FieldView { values, start: layout.place(0, 0), shape, row: layout.stride });
         }
         let mut values = vec![0.0; shape[0] * shape[1]];
@@ -233,7 +234,13 @@ impl<const D: usize, P: Physics<D>> Run for Simulated<D, P> {
         let maps = self.simulation.maps().into_iter().flat_map(granflow_engine::Maps::named);
         Saved {
             clock: self.simulation.clock(),
-            state: self.simulation.arrays().parts.iter().map(|part| Cow::Borrowed(part.as_slice())).collect(),
+            state: self
+                .simulation
+                .arrays()
+                .components()
+                .iter()
+                .map(|part| Cow::Borrowed(part.as_slice()))
+                .collect(),
             maps: maps.map(|(name, map)| (name, Cow::Borrowed(map))).collect(),
             at_rest: self.simulation.at_rest(),
             record: self.record,
@@ -248,7 +255,7 @@ impl<const D: usize, P: Physics<D>> Run for Simulated<D, P> {
         if at_rest {
             self.simulation.sleep_all();
         }
-        for (name, map) in self.simulation.maps_mut().into_iter().flat_map(granflow_engine::Maps::named_mut) {
+        for (name, map) in self.simulation.maps_mut() {
             let taken = maps.iter().position(|(own, values)| *own == name && values.len() == map.len());
             let Some(k) = taken else {
                 return Err(format!("its map {name} is missing or has another shape"));

@@ -8,7 +8,7 @@ use super::schedule::{Due, Schedule};
 use super::{Sink, SinkError};
 use crate::output;
 use crate::output::frames::Frames;
-use crate::output::ledger::{Entry, Ledger, sum};
+use crate::output::ledger::{Entry, Ledger};
 use crate::output::summary::StopReason;
 use crate::results::{FilesError, Finished};
 use crate::run::Run;
@@ -66,7 +66,12 @@ impl Files {
     ///
     /// # Errors
     /// [`BeginError`] naming the file.
-    pub fn begin(directory: &Path, plan: &RunPlan, command: &str, run: &mut dyn Run) -> Result<Files, BeginError> {
+    pub fn begin(
+        directory: &Path,
+        plan: &RunPlan,
+        command: &str,
+        run: &mut dyn Run,
+    ) -> Result<Files, BeginError> {
         remove_leftovers(directory)?;
         // An older checkpoint would belong to other frames.
         output::remove_if_there(&checkpoints::file_in(directory))?;
@@ -82,7 +87,12 @@ impl Files {
     ///
     /// # Errors
     /// [`BeginError`]; nothing has been changed on disk then.
-    pub fn resume(directory: &Path, plan: &RunPlan, command: &str, run: &mut dyn Run) -> Result<Files, BeginError> {
+    pub fn resume(
+        directory: &Path,
+        plan: &RunPlan,
+        command: &str,
+        run: &mut dyn Run,
+    ) -> Result<Files, BeginError> {
         remove_leftovers(directory)?;
         let refused = |problem: String| BeginError::Resume { directory: directory.to_owned(), problem };
         let saved = checkpoints::file_in(directory);
@@ -121,7 +131,7 @@ impl Files {
             command: command.to_owned(),
             film: run.film(),
             writer,
-            schedule: Schedule::new(plan.frames, run.plane().default_interval()),
+            schedule: Schedule::new(plan.frames, run.plane()),
             written,
             begun: now,
             updates: run.stepper().updates(),
@@ -142,24 +152,9 @@ impl Files {
         if self.written[1] == run.time() {
             return Ok(());
         }
-        let totals = run.take_totals();
-        let stepper = run.stepper();
-        let (out, initial) = (stepper.outflow(), run.record().initial);
-        let (gone, mass_in) = (sum(out), stepper.poured());
-        let speeds = |value: f64| if run.has_speed() { value } else { f64::NAN };
+        let entry = Entry::of(run);
         self.written[1] = run.time();
-        self.writer.line(Entry {
-            time: run.time(),
-            step: run.steps(),
-            mass: totals.volume,
-            mass_in,
-            out,
-            mass_error: relative(totals.volume + gone - initial - mass_in, initial + mass_in),
-            wet_cells: totals.wet as u64,
-            moving_cells: totals.moving as u64,
-            max_speed: speeds(totals.speed),
-            kinetic_energy: speeds(totals.energy),
-        })
+        self.writer.line(entry)
     }
 
     /// A frame of the series and its line in the ledger.
@@ -265,9 +260,4 @@ fn frames_in(directory: &Path) -> PathBuf {
 
 fn ledger_in(directory: &Path) -> PathBuf {
     directory.join("mass.csv")
-}
-
-/// part/whole, and 0 of nothing.
-fn relative(part: f64, whole: f64) -> f64 {
-    if whole == 0.0 { 0.0 } else { part / whole }
 }

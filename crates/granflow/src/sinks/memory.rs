@@ -2,8 +2,8 @@
 
 use super::schedule::{Due, Schedule};
 use super::{Sink, SinkError};
-use crate::output::ledger::Entry;
 use crate::model::Plane;
+use crate::output::ledger::Entry;
 use crate::run::{Maps, Run};
 use granflow_case::Frames;
 
@@ -43,7 +43,8 @@ impl Memory {
         let series = run.plane().series();
         let known = |name: &&str| series.iter().any(|field| field.name == **name);
         assert!(names.iter().all(|name| known(name)), "the run has no such field among {names:?}");
-        let kept = series.iter().enumerate().filter(|(_, f)| names.is_empty() || names.contains(&f.name.as_str()));
+        let kept =
+            series.iter().enumerate().filter(|(_, f)| names.is_empty() || names.contains(&f.name.as_str()));
         let kept: Vec<_> = kept.map(|(k, field)| (k, field.length)).collect();
         let recording = Recording {
             plane: run.place(),
@@ -53,7 +54,7 @@ impl Memory {
             ledger: Vec::new(),
             maps: Vec::new(),
         };
-        let mut memory = Memory { schedule: Schedule::new(frames, run.plane().default_interval()), recording, kept };
+        let mut memory = Memory { schedule: Schedule::new(frames, run.plane()), recording, kept };
         memory.frame(run);
         memory.schedule.plan(run);
         memory

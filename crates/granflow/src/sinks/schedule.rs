@@ -1,5 +1,6 @@
 //! When frames and ledger lines are due.
 
+use crate::model::{Plane, Units};
 use crate::run::{Run, after};
 use granflow_case::Frames;
 
@@ -28,9 +29,13 @@ pub enum Due {
 }
 
 impl Schedule {
-    /// Nothing is due before [`Schedule::plan`]; `default` is the time between frames where the case names none.
+    /// Nothing is due before [`Schedule::plan`].
     #[must_use]
-    pub fn new(frames: Frames, default: f64) -> Schedule {
+    pub fn new(frames: Frames, plane: &Plane) -> Schedule {
+        let default = match plane.domain.units() {
+            Units::Si => 10.0,
+            Units::Scaled => 1.0,
+        };
         Schedule { frames, default, next_frame: f64::INFINITY, next_line: f64::INFINITY }
     }
     /// The times of the next frame and line.

@@ -208,7 +208,7 @@ pub(super) fn on_terrain(second: bool, extent: Extent) -> Begun<2, Balanced<Law,
     };
     let terrain = Terrain::new(bed, Curvature::Length(3.0 * sheet.size[0]));
     let scheme = balanced(second);
-    let ground = move |cell| crate::setup::ground_at(&terrain, 1.0, cell);
+    let ground = move |cell| crate::models::savage_hutter::run::terrain::ground_at(&terrain, 1.0, cell);
     let start = |index| cap(&sheet, extent, index);
     Begun::new(
         Simulation::new(scheme, sheet, COURANT, ground, start).expect("a step that the scheme takes"),

@@ -1,9 +1,9 @@
 //! One example run by one scheme, in memory, and what is measured on it.
 
+use granflow::Case;
 use granflow::case::Kind;
 use granflow::run::Run;
 use granflow::savage_hutter::exact::Riemann;
-use granflow::Case;
 
 use super::examples::{EXAMPLES, Example, Id, SCHEMES};
 use crate::failure::Failure;

@@ -3,8 +3,8 @@
 use granflow::hadeler_kuttler::exact;
 use granflow::hadeler_kuttler::scheme::{FIRST_ORDER, HadelerKuttler, SECOND_ORDER};
 use granflow::hadeler_kuttler::table::Table;
+use granflow::models::hadeler_kuttler::run::site::Site;
 use granflow::simulation::{Simulation, StepSize};
-use granflow::site::Site;
 
 use super::super::parallel;
 use super::{LAMBDA, SCHEMES, SOURCE, adaptive, failed};

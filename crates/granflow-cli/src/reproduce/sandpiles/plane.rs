@@ -4,9 +4,9 @@ use granflow::hadeler_kuttler::direct::Equilibrium;
 use granflow::hadeler_kuttler::scheme::{FIRST_ORDER, HadelerKuttler};
 use granflow::hadeler_kuttler::table::{Edge, Table};
 use granflow::hadeler_kuttler::{Pile as State, exact};
+use granflow::models::hadeler_kuttler::run::site::Site;
 use granflow::scheme::Scheme;
 use granflow::simulation::{Simulation, StepSize};
-use granflow::site::Site;
 
 use super::super::parallel;
 use super::{SCHEMES, SOURCE, failed};

@@ -56,7 +56,8 @@ pub(super) fn read(path: &Path, plan: &RunPlan, run: &dyn Run) -> Result<Taken, 
         peak_energy: scalar("peak_energy"),
         ..*run.record()
     };
-    let (due, written) = ([scalar("next_frame"), scalar("next_line")], [kept("last_frame"), kept("last_line")]);
+    let (due, written) =
+        ([scalar("next_frame"), scalar("next_line")], [kept("last_frame"), kept("last_line")]);
     let at_rest = saved.scalar("at_rest") == Some(1.0);
     let clock = (0..now.clock.len()).map_while(|k| saved.scalar(&format!("clock_{k}"))).collect();
     let names: Vec<&'static str> = now.maps.iter().map(|(name, _)| *name).collect();

@@ -1,12 +1,12 @@
 //! A run as it ends: maps, figures, and why.
 
+use super::Files;
 use super::writer::Writer;
-use super::{Files, relative};
 use crate::case::FileKind;
-use crate::output::frames::Frames;
-use crate::output::ledger::{Entry, sum};
-use crate::output::summary::{StopReason, Summary};
 use crate::model::Plane;
+use crate::output::frames::Frames;
+use crate::output::ledger::{Entry, mass_error, sum};
+use crate::output::summary::{StopReason, Summary};
 use crate::results::Finished;
 use crate::run::{Maps, Run, Until};
 use std::path::PathBuf;
@@ -15,8 +15,9 @@ use std::path::PathBuf;
 #[derive(Debug)]
 pub(super) struct Ending {
     directory: PathBuf,
-    kinds: Vec<FileKind>,
-    case: [String; 2],
+    files: Vec<FileKind>,
+    case: String,
+    case_text: String,
     film: f64,
     plane: Plane,
     maps: Maps,
@@ -47,8 +48,9 @@ impl Ending {
     fn with(files: &Files, plane: Plane, maps: Maps, summary: Summary) -> Ending {
         Ending {
             directory: files.directory.clone(),
-            kinds: files.plan.files.clone(),
-            case: [files.plan.resolved(), files.plan.text()],
+            files: files.plan.files.clone(),
+            case: files.plan.resolved(),
+            case_text: files.plan.text(),
             film: files.film,
             plane,
             maps,
@@ -58,8 +60,9 @@ impl Ending {
 
     /// Put it together.
     pub fn finished(self, frames: Frames, ledger: Vec<Entry>) -> Finished {
-        let Ending { directory, kinds, case, film, plane, maps, summary } = self;
-        Finished { directory, files: kinds, case, plane, frames, ledger, maps, film, summary }
+        let Ending { directory, files, case, case_text, film, plane, mut maps, mut summary } = self;
+        plane.derive(&mut maps, &mut summary);
+        Finished { directory, files, case, case_text, plane, frames, ledger, maps, film, summary }
     }
 }
 
@@ -85,7 +88,7 @@ fn summary(files: &Files, run: &dyn Run, stop_reason: StopReason) -> Summary {
         mass_final: totals.volume,
         mass_in,
         mass_out: gone,
-        mass_error: relative(totals.volume + gone - initial - mass_in, initial + mass_in),
+        mass_error: mass_error(run, &totals),
         film_volume: totals.film,
         max_speed_final: speed(totals.speed),
         max_speed: speed(record.peak_speed),

@@ -30,7 +30,8 @@ pub(crate) fn lines(run: &RunPlan, plan: &Plan) -> Vec<Line> {
 fn on<const D: usize>(run: &RunPlan, Pile { table: plan, sources }: &Pile<D>, axes: &[&Axis]) -> Vec<Line> {
     let cell: f64 = axes.iter().map(|axis| axis.width()).product();
     let count = plan.table.count();
-    let mut lines = vec![("table", format!("{count} cells, {:.6} in all, {}", count as f64 * cell, edges(plan)))];
+    let mut lines =
+        vec![("table", format!("{count} cells, {:.6} in all, {}", count as f64 * cell, edges(plan)))];
     let (low, high) = range(&plan.height);
     if (low, high) != (0.0, 0.0) {
         lines.push(("", format!("{low} to {high} high")));

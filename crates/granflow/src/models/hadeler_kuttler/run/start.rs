@@ -56,7 +56,7 @@ pub(crate) fn pour<const D: usize>(
 }
 
 /// Sand that is poured on the cells of a table.
-pub trait Sources: Send {
+pub trait Sources: Send + Sync {
     /// The rate f of every cell at time t \[thickness per time\], x fastest; 0 off the table.
     fn rate(&self, t: f64) -> Vec<f64>;
     /// The times after 0 at which a source begins or ends, growing.
@@ -156,7 +156,8 @@ impl<const D: usize> Sand<D> {
             }
             if walls.contains(&true) { walls } else { Vec::new() }
         };
-        let index = |cell: usize| std::array::from_fn(|k| if k == 0 { cell % x.len() } else { cell / x.len() });
+        let index =
+            |cell: usize| std::array::from_fn(|k| if k == 0 { cell % x.len() } else { cell / x.len() });
         let flat = self.site.bed.iter().all(|height| *height == 0.0);
         TableDomain {
             x_node: x_node.clone(),

@@ -177,7 +177,12 @@ impl<'a> Avalanche<'a, 2, granflow_geo::terrain::Terrain> {
     /// # Errors
     /// [`BuildError`] for a grid without cells, or a step that the scheme does not take.
     pub fn start(mut self) -> Result<Box<dyn Run>, BuildError> {
-        let empty = granflow_geo::raster::Raster { columns: 0, rows: 0, values: Vec::new(), ..(*self.bed.bed).clone() };
+        let empty = granflow_geo::raster::Raster {
+            columns: 0,
+            rows: 0,
+            values: Vec::new(),
+            ..(*self.bed.bed).clone()
+        };
         let none = granflow_geo::terrain::Terrain::new(empty, granflow_geo::terrain::Curvature::Off);
         let terrain = std::mem::replace(&mut self.bed, none);
         let columns = self.grid.cells[0];

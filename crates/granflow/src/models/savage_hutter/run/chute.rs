@@ -1,7 +1,7 @@
 //! An avalanche on a chute in the papers' scaling: from a checked case to a run.
 
-use super::flowing::Flowing;
 use super::super::ChuteDomain;
+use super::flowing::Flowing;
 use crate::StartError;
 use crate::model::Plane;
 use crate::run::{Run, Simulated};
@@ -90,15 +90,11 @@ fn grid<const D: usize>(plan: &Plan) -> Grid<D> {
 
 /// The ground of every column of cells.
 fn columns(plan: &Plan) -> Vec<Chute<2, f64>> {
-    let (material, gravity) = (&plan.material, plan.material.gravity);
-    let column = |(zeta, kappa): (&f64, &f64)| {
-        let cos = gravity * zeta.cos();
-        Chute {
-            tilt: [gravity * zeta.sin(), 0.0],
-            beta: plan.epsilon * material.pressure_coefficient * cos,
-            cos,
-            curvature: plan.eta * kappa,
-        }
+    let column = |k: usize| Chute {
+        tilt: [plan.material.gravity * plan.zeta[k].sin(), 0.0],
+        beta: plan.beta(k),
+        cos: plan.weight(k),
+        curvature: plan.eta * plan.kappa[k],
     };
-    plan.zeta.iter().zip(&plan.kappa).map(column).collect()
+    (0..plan.zeta.len()).map(column).collect()
 }

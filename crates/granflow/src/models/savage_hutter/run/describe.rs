@@ -6,8 +6,8 @@ use crate::describe::{Line, axis, case, effort, range};
 use crate::run::Run;
 use granflow_case::avalanche::Material;
 use granflow_case::terrain::Order;
-use granflow_case::{chute::Plan as OnChute, terrain::Plan as OnTerrain};
 use granflow_case::{Axis, RunPlan, Side};
+use granflow_case::{chute::Plan as OnChute, terrain::Plan as OnTerrain};
 use granflow_geo::terrain::Terrain;
 
 /// A fast avalanche \[m/s\].
@@ -38,7 +38,8 @@ pub(crate) fn terrain(run: &RunPlan, plan: &OnTerrain) -> Result<Vec<Line>, Star
 /// How the state at the start would move.
 fn start(run: &RunPlan, start: &mut dyn Run) -> Vec<Line> {
     let (totals, rate) = (start.totals(), start.stepper().rate());
-    let bytes = start.stepper().bytes();
+    let cells: usize = start.stepper().cells().iter().product();
+    let bytes = cells * start.stepper().bytes_per_cell(start.has_speed());
     let pull = start.stepper_mut().yield_ratios().into_iter().fold(0.0, f64::max);
     let verdict = if pull > 1.0 { "it will start" } else { "it rests" };
     let mut lines = vec![
@@ -66,7 +67,7 @@ fn grid(plan: &OnChute) -> Vec<Line> {
     let mut lines = vec![("grid", with_sides("x", &plan.grid.x, plan.sides[0]))];
     lines.extend(plan.grid.y.as_ref().map(|y| ("", with_sides("y", y, plan.sides[1]))));
     let (low, high) = range(&plan.zeta);
-    lines.push(if plan.profile {
+    lines.push(if low < high {
         ("slope", format!("{:.4} to {:.4} deg", low.to_degrees(), high.to_degrees()))
     } else {
         ("slope", format!("{:.4} deg", low.to_degrees()))
@@ -97,9 +98,6 @@ fn mountain(terrain: &Terrain) -> Vec<Line> {
         ("terrain", format!("{size}, {nodata} without elevation")),
         ("", format!("{low:.1} to {high:.1} m")),
         ("steep", format!("{} cells above 60 deg, steepest {steepest:.1} deg", steep.steeper)),
-        (
-            "curvature",
-            format!("{share:.2} % of the cells throw a mass of {FAST} m/s into the air (N < 0)"),
-        ),
+        ("curvature", format!("{share:.2} % of the cells throw a mass of {FAST} m/s into the air (N < 0)")),
     ]
 }

@@ -1,13 +1,13 @@
 //! An avalanche on a mountain, SI units: from a checked case to a run.
 
+use super::super::TerrainDomain;
 use super::chute::step_size;
 use super::flowing::Flowing;
-use super::super::TerrainDomain;
 use crate::StartError;
 use crate::model::Plane;
 use crate::run::{Run, Simulated};
 use granflow_case::RunPlan;
-use granflow_case::terrain::{From, Measured, Order, Plan, Release, Thickness};
+use granflow_case::terrain::{Extent, Measured, Order, Plan, Release, Thickness};
 use granflow_engine::grid::Grid;
 use granflow_engine::simulation::Simulation;
 use granflow_geo::raster::{Crs, Raster};
@@ -63,7 +63,11 @@ pub(super) fn simulate(
 }
 
 /// The ground of a cell of a mountain under `gravity` \[m/s^2\], by column and row, the first row in the south.
-pub(crate) fn ground_at(mountain: &Terrain, gravity: f64, [column, row]: [usize; 2]) -> ground::Terrain<2, f64> {
+pub(crate) fn ground_at(
+    mountain: &Terrain,
+    gravity: f64,
+    [column, row]: [usize; 2],
+) -> ground::Terrain<2, f64> {
     let level = mountain.bed.at(column, row);
     if level.is_nan() {
         return ground::Terrain::nothing(gravity);
@@ -124,16 +128,16 @@ fn bed(run: &RunPlan, plan: &Plan) -> Result<Terrain, StartError> {
 
 /// Volume per plan area that one release gives to the cells.
 fn volume(one: &Release, terrain: &Terrain) -> Result<Sparse, StartError> {
-    let cells = match &one.from {
-        From::Polygons { path, thickness } => {
+    let cells = match &one.extent {
+        Extent::Polygons { path, thickness } => {
             let thickness = match thickness {
                 Thickness::Constant(value) => release::Thickness::Value(*value),
                 Thickness::Attribute(name) => release::Thickness::Attribute(name.attribute.clone()),
             };
             release::polygons(path, &thickness, &terrain.bed)?
         }
-        From::Raster(path) => release::raster(path, &terrain.bed)?,
-        From::Cap(cap) => release::cap(cap.height, cap.centre, cap.radius, &terrain.bed)?,
+        Extent::Raster(path) => release::raster(path, &terrain.bed)?,
+        Extent::Cap(cap) => release::cap(cap.height, cap.centre, cap.radius, &terrain.bed)?,
     };
     let measured = match one.measured {
         Measured::Normal => release::Measured::Normal,
