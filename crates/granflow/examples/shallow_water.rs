@@ -27,7 +27,7 @@ struct Water<const D: usize, R> {
     h: R,
     q: [R; D],
 }
-components!([const D: usize, R: Real] Water<D, R> { h: R, q: [R; D] } masks {});
+components!([const D: usize, R: Real] Water<D, R> { h: R, q: [R; D] });
 
 impl<const D: usize, R: Real> Water<D, R> {
     fn velocity(&self) -> [R; D] {
@@ -42,7 +42,7 @@ impl<const D: usize, R: Real> Water<D, R> {
 struct Bed<R> {
     z: R,
 }
-components!([R: Real] Bed<R> { z: R } masks {});
+components!([R: Real] Bed<R> { z: R });
 
 /// What a cell offers to its faces.
 #[derive(Clone, Copy, Debug)]
@@ -51,7 +51,7 @@ struct Offer<const D: usize, R> {
     u: [R; D],
     z: R,
 }
-components!([const D: usize, R: Real] Offer<D, R> { h: R, u: [R; D], z: R } masks {});
+components!([const D: usize, R: Real] Offer<D, R> { h: R, u: [R; D], z: R });
 
 /// What passes a face; the momentum as its two cells see it.
 #[derive(Clone, Copy, Debug)]
@@ -60,7 +60,7 @@ struct Passing<const D: usize, R> {
     left: [R; D],
     right: [R; D],
 }
-components!([const D: usize, R: Real] Passing<D, R> { mass: R, left: [R; D], right: [R; D] } masks {});
+components!([const D: usize, R: Real] Passing<D, R> { mass: R, left: [R; D], right: [R; D] });
 
 /// The scheme, with Manning's n \[s m^(-1/3)\].
 #[derive(Clone, Copy, Debug)]

@@ -111,7 +111,7 @@ fn shapefiles_with_islands_in_holes_and_attributes() {
     let attribute = Thickness::Attribute("Thickness".into());
     let by_bytes = layer(Some(&table)).unwrap().thickness(&attribute, &ground()).unwrap().dense(80);
     assert_eq!(by_bytes, height);
-    assert_eq!(layer(None).unwrap().outlines().unwrap(), outlines(&path).unwrap());
+    assert_eq!(layer(None).unwrap().outlines().unwrap(), Layer::read(&path).unwrap().outlines().unwrap());
     let message = layer(None).unwrap().thickness(&attribute, &ground()).unwrap_err().to_string();
     assert!(message.contains("a.shp has no attribute `Thickness`") && message.contains(".dbf"), "{message}");
 

@@ -282,7 +282,7 @@ mod tests {
                 ("thickness".into(), double([1.0, f64::from_bits(0x7ff8_0000_0000_beef), 5e-324])),
                 ("nothing".into(), double([])),
                 ("momentum".into(), double((0..70_000).map(|i| f64::from(i).sin()))),
-                ("peak_speed".into(), Numbers::Single(&[0.1, f32::MIN_POSITIVE])),
+                ("peak_speed".into(), Numbers::Single(Cow::Borrowed(&[0.1, f32::MIN_POSITIVE]))),
             ],
         }
     }

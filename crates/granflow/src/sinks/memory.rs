@@ -4,8 +4,16 @@ use super::schedule::{Due, Schedule};
 use super::{Sink, SinkError};
 use crate::model::Plane;
 use crate::output::ledger::Entry;
+#[cfg(feature = "files")]
+use crate::output::{Error, netcdf::Values};
+#[cfg(feature = "files")]
+use crate::results::{About, dataset};
 use crate::run::{Maps, Run};
 use granflow_case::Frames;
+#[cfg(feature = "files")]
+use granflow_case::Precision;
+#[cfg(feature = "files")]
+use std::path::Path;
 
 /// Keeps the frames of a run: its fields at every due instant, all fields unless some are named.
 #[derive(Debug)]
@@ -101,6 +109,21 @@ impl Recording {
     #[must_use]
     pub fn field(&self, name: &str) -> Option<&[Vec<f64>]> {
         self.fields.iter().find(|(own, _)| own == name).map(|(_, series)| series.as_slice())
+    }
+    /// Writes everything as a NetCDF-4 file after the CF conventions, as a run from a case leaves it.
+    ///
+    /// # Errors
+    /// [`Error`] naming the file; [`Error::Invalid`] for a field or a map that is no quantity of the model.
+    #[cfg(feature = "files")]
+    pub fn write_netcdf(&self, path: &Path) -> Result<(), Error> {
+        let series = self
+            .fields
+            .iter()
+            .map(|(name, values)| (name.as_str(), Values::Series(values.as_slice().into())));
+        let about = About { scheme: self.scheme.clone(), ..About::default() };
+        let data =
+            dataset(&self.plane, Precision::F64, self.times.clone(), series.collect(), &self.maps, about);
+        data.map_err(|problem| Error::invalid(path, problem))?.write(path, None)
     }
     /// A map by its name.
     #[must_use]

@@ -1,5 +1,6 @@
 use super::*;
 use crate::output::frames::Field;
+use std::borrow::Cow;
 use std::fs;
 use std::path::Path;
 use std::time::Duration;
@@ -35,7 +36,10 @@ fn entry(step: u64) -> Entry {
 
 fn saved<'a>(step: u64, state: &'a [f64]) -> Checkpoint<'a> {
     let numbers = Numbers::Double(state.into());
-    let arrays = vec![("state_0".to_owned(), numbers), ("map".to_owned(), Numbers::Single(&[0.1, 7.0]))];
+    let arrays = vec![
+        ("state_0".to_owned(), numbers),
+        ("map".to_owned(), Numbers::Single(Cow::Borrowed(&[0.1, 7.0]))),
+    ];
     Checkpoint { case: "case".to_owned(), step, time: 0.5, scalars: vec![("peak".to_owned(), 0.1)], arrays }
 }
 
