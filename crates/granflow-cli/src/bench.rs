@@ -6,7 +6,7 @@ use std::time::Duration;
 
 use granflow::case::nearest;
 use granflow::simulation::SimdLevel;
-use granflow::speed::{Extent, SETUPS, Setup, SpeedError, Triad, spells};
+use granflow::speed::{Extent, Setup, SpeedError, Triad, setups, spells};
 
 use crate::failure::{Failure, print};
 
@@ -80,7 +80,7 @@ pub fn bench(options: &Options) -> Result<(), Failure> {
     let (repeats, seconds) = if options.quick { (3, 0.02) } else { (5, 0.3) };
     for setup in plan.setups {
         for cells in sizes(setup, &plan.cells) {
-            let mut load = setup.begin(Extent { cells, wet: options.wet });
+            let mut load = setup.start(Extent { cells, wet: options.wet });
             load.use_simd(plan.instructions);
             for &threads in &plan.threads {
                 let spells = spells(load.as_mut(), threads, repeats, Duration::from_secs_f64(seconds));
@@ -115,7 +115,7 @@ fn sizes(setup: &Setup, asked: &[usize]) -> Vec<usize> {
 /// Checks everything that can be wrong before work starts.
 fn plan(options: &Options) -> Result<Plan, Failure> {
     let setups = match options.scheme.as_slice() {
-        [] => SETUPS.iter().filter(|setup| setup.dry || options.wet == 1.0).collect(),
+        [] => setups().filter(|setup| setup.dry || options.wet == 1.0).collect(),
         names => names.iter().map(|name| named(name)).collect::<Result<_, _>>()?,
     };
     let instructions = match options.instructions.as_str() {
@@ -157,8 +157,8 @@ fn plan(options: &Options) -> Result<Plan, Failure> {
 }
 
 fn named(name: &str) -> Result<&'static Setup, Failure> {
-    SETUPS.iter().find(|setup| setup.name == name).ok_or_else(|| {
-        let names = || SETUPS.iter().map(|setup| setup.name);
+    setups().find(|setup| setup.name == name).ok_or_else(|| {
+        let names = || setups().map(|setup| setup.name);
         let near = nearest(name, names()).map(|near| format!("did you mean `{near}`? ")).unwrap_or_default();
         Failure::usage(
             format!("there is no scheme `{name}` to measure"),

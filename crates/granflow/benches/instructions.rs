@@ -3,7 +3,7 @@
 //! `.ci/instructions` counts, and fails where a number differs by more than 2 % from `instructions.txt`, up or down;
 //! `.ci/instructions --record` writes that file. valgrind knows no AVX-512: what is counted are the lanes of AVX2.
 
-use granflow::speed::{Extent, SETUPS, Setup};
+use granflow::speed::{Extent, Setup, setups};
 use std::path::Path;
 use std::process::{Command, ExitCode};
 
@@ -34,14 +34,14 @@ fn main() -> Result<ExitCode, Trouble> {
 }
 
 fn setup(name: &str) -> Result<&'static Setup, Trouble> {
-    SETUPS.iter().find(|setup| setup.name == name).ok_or_else(|| format!("there is no setup {name}").into())
+    setups().find(|setup| setup.name == name).ok_or_else(|| format!("there is no setup {name}").into())
 }
 
 /// Take steps on one thread.
 fn take(setup: &Setup, steps: u64) -> Result<(), Trouble> {
     let pool = rayon::ThreadPoolBuilder::new().num_threads(1).build()?;
     Ok(pool.install(|| {
-        let mut load = setup.begin(Extent { cells: CELLS, wet: 1.0 });
+        let mut load = setup.start(Extent { cells: CELLS, wet: 1.0 });
         (0..steps).try_for_each(|_| load.step())
     })?)
 }

@@ -4,6 +4,7 @@ use crate::StartError;
 use crate::describe::Line;
 use crate::models::{hadeler_kuttler, savage_hutter};
 use crate::run::Run;
+use crate::speed::Setup;
 use granflow_case::{Kind, RunPlan};
 
 /// The run of a checked case.
@@ -22,4 +23,9 @@ pub(crate) fn describe(run: &RunPlan, kind: Kind) -> Result<Vec<Line>, StartErro
         Kind::Terrain(plan) => savage_hutter::run::describe::terrain(run, &plan),
         Kind::Sandpile(plan) => Ok(hadeler_kuttler::run::describe::lines(run, &plan)),
     }
+}
+
+/// The runs to measure the models by.
+pub(crate) fn setups() -> impl Iterator<Item = &'static Setup> + Clone {
+    savage_hutter::run::speed::SETUPS.iter().chain(hadeler_kuttler::run::speed::SETUPS)
 }

@@ -4,4 +4,5 @@ pub(crate) mod describe;
 mod pouring;
 pub mod sandpile;
 pub mod site;
+pub(crate) mod speed;
 pub(crate) mod start;

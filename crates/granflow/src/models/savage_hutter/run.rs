@@ -4,5 +4,6 @@ pub mod avalanche;
 pub(crate) mod chute;
 pub(crate) mod describe;
 pub(crate) mod flowing;
+pub(crate) mod speed;
 #[cfg(feature = "geo")]
 pub(crate) mod terrain;
