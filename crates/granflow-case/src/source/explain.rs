@@ -12,6 +12,18 @@ pub(crate) struct Missing {
 }
 
 impl Source {
+    /// The first of the tables, and of the keys outside any, that is not `known`.
+    pub(crate) fn unknown(&self, known: &[String]) -> Option<CaseError> {
+        let outer = |name: &&String| !name.contains(['.', '[']) && !known.contains(name);
+        let (name, place) =
+            self.places.iter().filter(|(name, _)| outer(name)).min_by_key(|(_, place)| place.key.start)?;
+        let mut known: Vec<&str> = known.iter().map(String::as_str).collect();
+        known.sort_unstable();
+        known.dedup();
+        let error = self.at(Some(place.key.clone()), name, format!("unknown key `{name}` in the case"));
+        Some(error.allowed(name, known))
+    }
+
     /// Puts what serde and toml say into a user's words, with the key and the nearest right spelling.
     pub(crate) fn explain(&self, error: &toml::de::Error, missing: &[Missing]) -> CaseError {
         let message = error.message();
