@@ -97,6 +97,8 @@ struct Listed {
     about: About,
     read: fn(toml::de::Deserializer) -> Result<Arc<dyn Words>, toml::de::Error>,
     schema: fn(&mut SchemaGenerator) -> Schema,
+    /// The names of its tables and of its keys outside any table.
+    tables: fn() -> Vec<String>,
 }
 
 impl Listed {
@@ -105,6 +107,11 @@ impl Listed {
             about: W::ABOUT,
             read: |document| Ok(Arc::new(W::deserialize(document)?)),
             schema: |generator| generator.subschema_for::<W>(),
+            tables: || {
+                let schema = SchemaGenerator::default().into_root_schema_for::<W>();
+                let tables = schema.get("properties").and_then(serde_json::Value::as_object);
+                tables.into_iter().flatten().map(|(name, _)| name.clone()).collect()
+            },
         }
     }
 }
@@ -136,7 +143,11 @@ fn choose(source: &Source) -> Result<&'static Listed, CaseError> {
     };
     let placed: Vec<&Listed> = of_model.iter().copied().filter(|kind| source.has(kind.about.place)).collect();
     match placed.as_slice() {
-        [] => Ok(first),
+        // a misspelt place must not be answered as if the other were meant
+        [] => match source.unknown(&of_model.iter().flat_map(|kind| (kind.tables)()).collect::<Vec<_>>()) {
+            Some(error) => Err(error),
+            None => Ok(first),
+        },
         [one] => Ok(one),
         [one, other, ..] => {
             let [one, other] = [one, other].map(|kind| kind.about.place);

@@ -5,9 +5,15 @@ use std::ops::Range;
 use std::path::{Path, PathBuf};
 
 use toml::Spanned;
-use toml::de::{DeArray, DeTable, DeValue};
+use toml::de::{DeTable, DeValue};
 
 use super::fault::CaseError;
+
+mod explain;
+mod overrides;
+mod resolve;
+
+pub(crate) use explain::Missing;
 
 /// A case as text: the file and the overrides, in one numbering of bytes, and the place of every key.
 #[derive(Debug, Clone, Default)]
@@ -54,7 +60,7 @@ impl Source {
         source.add(name.to_owned(), text.to_owned(), Vec::new());
         for argument in overrides {
             let name = format!("--set {argument}");
-            let (path, written) = split(&name, argument)?;
+            let (path, written) = overrides::split(&name, argument)?;
             source.add(name, written, path);
         }
         let mut places = BTreeMap::new();
@@ -69,8 +75,8 @@ impl Source {
         let Some(file) = pieces.next() else { return Ok(Spanned::new(0..0, DeTable::new())) };
         let mut root = file.parse()?;
         for piece in pieces {
-            let table = shift_table(piece.parse()?.into_inner(), piece.start);
-            lay_over(root.get_mut(), table, &piece.path).map_err(|message| {
+            let table = overrides::shift(piece.parse()?.into_inner(), piece.start);
+            overrides::lay_over(root.get_mut(), table, &piece.path).map_err(|message| {
                 CaseError::new(&piece.name, &piece.text, None, &piece.path.join("."), message).help(
                     "a number in the path counts the entries of a list from 0, as in release.0.thickness=1.5",
                 )
@@ -105,7 +111,7 @@ impl Source {
     pub fn resolved(&self) -> String {
         let [file] = self.pieces.as_slice() else {
             let document = self.document().ok();
-            let table = document.map(|document| resolve_table(document.into_inner())).unwrap_or_default();
+            let table = document.map(|document| resolve::table(document.into_inner())).unwrap_or_default();
             return table.to_string();
         };
         file.text.clone()
@@ -194,70 +200,6 @@ impl Source {
             .min_by_key(|(name, range)| (range.len(), std::cmp::Reverse(name.len())))
             .map_or("", |(name, _)| name.as_str())
     }
-
-    /// Puts what serde and toml say into a user's words, with the key and the nearest right spelling.
-    pub(crate) fn explain(&self, error: &toml::de::Error, missing: &[Missing]) -> CaseError {
-        let message = error.message();
-        let span = error.span().filter(|span| *span != (0..0));
-        let key = span.as_ref().map_or("", |span| self.key_at(span));
-        let quoted: Vec<&str> = message.split('`').skip(1).step_by(2).collect();
-        let plain = |text: String| self.at(span.clone(), key, text);
-        match quoted.as_slice() {
-            [found, known @ ..] if message.starts_with("unknown field") => {
-                let table = key.rsplit_once('.').map_or("the case", |(table, _)| table);
-                plain(format!("unknown key `{found}` in {table}")).allowed(found, known.iter().copied())
-            }
-            [found, known @ ..] if message.starts_with("unknown variant") => {
-                plain(format!("found `{found}`, which is not one of the choices"))
-                    .allowed(found, known.iter().copied())
-            }
-            [field] if message.starts_with("missing field") => {
-                let full = if key.is_empty() { (*field).to_owned() } else { format!("{key}.{field}") };
-                let plain = format!("the key `{field}` is missing");
-                match missing.iter().find(|one| one.key == full) {
-                    Some(Missing { message: Some(message), cure, .. }) => {
-                        self.fault(&full, *message).help(*cure)
-                    }
-                    Some(Missing { cure, .. }) => self.at(span.clone(), &full, plain).help(*cure),
-                    None => {
-                        let table = if key.is_empty() { "the case" } else { key };
-                        self.at(span.clone(), &full, plain).help(format!("add {field} = ... to {table}"))
-                    }
-                }
-            }
-            _ if message.starts_with("wanted exactly 1 element") => plain(
-                "exactly one choice is wanted here".into(),
-            )
-            .help(format!("keep one of them; with --set, replace the whole choice: --set '{key}={{...}}'")),
-            _ => plain(friendly(message)),
-        }
-    }
-}
-
-/// What is said where a key is missing: `message`, else that it is missing, and the cure.
-#[derive(Debug, Clone, Copy)]
-pub(crate) struct Missing {
-    pub key: &'static str,
-    pub message: Option<&'static str>,
-    pub cure: &'static str,
-}
-
-/// serde's names of types in plain words.
-fn friendly(message: &str) -> String {
-    let message = message.replace("invalid type: ", "found ").replace("invalid value: ", "found ");
-    [
-        (", expected f64", ", expected a number"),
-        (", expected usize", ", expected a whole number, not negative"),
-        (", expected u64", ", expected a whole number, not negative"),
-        (", expected a sequence", ", expected a list [ ... ]"),
-        ("floating point", "the number"),
-        ("found integer", "found the number"),
-        ("found string", "found the text"),
-        ("found map", "found a table"),
-        ("found sequence", "found a list"),
-    ]
-    .iter()
-    .fold(message, |text, (from, to)| text.replace(from, to))
 }
 
 fn note_table(places: &mut BTreeMap<String, Place>, path: &str, table: &DeTable) {
@@ -280,128 +222,5 @@ fn note_value(places: &mut BTreeMap<String, Place>, path: &str, value: &DeValue)
             }
         }
         _ => {}
-    }
-}
-
-/// Splits `key.path=value` and writes it as TOML, the value in quotes where it is a bare word.
-fn split(name: &str, argument: &str) -> Result<(Vec<String>, String), CaseError> {
-    let wrong = |message: &str| {
-        CaseError::new(name, argument, None, "", message.to_owned())
-            .help("write --set key.path=value, for instance --set scheme.courant=0.5 or --set 'material.slope=20 deg'")
-    };
-    let (key, value) = argument.split_once('=').ok_or_else(|| wrong("there is no `=`"))?;
-    let (key, value) = (key.trim(), value.trim());
-    let path: Vec<String> = key.split('.').map(|part| part.trim().to_owned()).collect();
-    let bare = |part: &String| {
-        !part.is_empty() && part.chars().all(|sign| sign.is_ascii_alphanumeric() || "_-".contains(sign))
-    };
-    if !path.iter().all(bare) {
-        return Err(wrong(&format!("`{key}` is not a key")));
-    }
-    if value.is_empty() {
-        return Err(wrong("there is no value after `=`"));
-    }
-    let written = format!("{key} = {value}");
-    if DeTable::parse(&written).is_ok() {
-        return Ok((path, written));
-    }
-    Ok((path, format!("{key} = {}", toml::Value::String(value.to_owned()))))
-}
-
-/// Lays the single value of `over` under `path` over the document.
-fn lay_over<'a>(document: &mut DeTable<'a>, over: DeTable<'a>, path: &[String]) -> Result<(), String> {
-    for (key, value) in over {
-        let inner = &path[1..];
-        if inner.is_empty() {
-            document.remove(key.get_ref().as_ref());
-            document.insert(key, value);
-            continue;
-        }
-        let span = value.span();
-        let DeValue::Table(rest) = value.into_inner() else { continue };
-        let step = key.get_ref().to_string();
-        match document.get_mut(step.as_str()).map(Spanned::get_mut) {
-            Some(DeValue::Table(table)) => lay_over(table, rest, inner)?,
-            Some(DeValue::Array(list)) => lay_over_list(list, rest, inner, &step)?,
-            _ => {
-                document.remove(step.as_str());
-                document.insert(key, Spanned::new(span, DeValue::Table(rest)));
-            }
-        }
-    }
-    Ok(())
-}
-
-fn lay_over_list<'a>(
-    list: &mut DeArray<'a>,
-    over: DeTable<'a>,
-    path: &[String],
-    name: &str,
-) -> Result<(), String> {
-    let count = list.len();
-    let item = path[0].parse().ok().and_then(|index: usize| list.get_mut(index));
-    let Some(item) = item else {
-        return Err(format!("`{name}` is a list with {count} entries; `{}` is none of them", path[0]));
-    };
-    for (_, value) in over {
-        match (path.len(), item.get_mut(), value.get_ref()) {
-            (1, _, _) => *item = value,
-            (_, DeValue::Table(table), DeValue::Table(_)) => {
-                if let DeValue::Table(rest) = value.into_inner() {
-                    lay_over(table, rest, &path[1..])?;
-                }
-            }
-            _ => return Err(format!("entry {} of `{name}` is not a table", path[0])),
-        }
-    }
-    Ok(())
-}
-
-fn shift_table(table: DeTable, by: usize) -> DeTable {
-    let moved = |span: Range<usize>| span.start + by..span.end + by;
-    table
-        .into_iter()
-        .map(|(key, value)| {
-            let span = moved(key.span());
-            (Spanned::new(span, key.into_inner()), shift_value(value, by))
-        })
-        .collect()
-}
-
-fn shift_value(value: Spanned<DeValue>, by: usize) -> Spanned<DeValue> {
-    let span = value.span().start + by..value.span().end + by;
-    let inner = match value.into_inner() {
-        DeValue::Table(table) => DeValue::Table(shift_table(table, by)),
-        DeValue::Array(array) => {
-            let mut moved = DeArray::new();
-            array.into_iter().for_each(|item| moved.push(shift_value(item, by)));
-            DeValue::Array(moved)
-        }
-        other => other,
-    };
-    Spanned::new(span, inner)
-}
-
-/// A table without the places of its keys.
-fn resolve_table(table: DeTable) -> toml::Table {
-    let entries = table.into_iter();
-    entries.map(|(key, value)| (key.into_inner().into_owned(), resolve(value.into_inner()))).collect()
-}
-
-fn resolve(value: DeValue) -> toml::Value {
-    match value {
-        DeValue::Table(table) => toml::Value::Table(resolve_table(table)),
-        DeValue::Array(list) => {
-            toml::Value::Array(list.into_iter().map(|item| resolve(item.into_inner())).collect())
-        }
-        DeValue::String(text) => toml::Value::String(text.into_owned()),
-        DeValue::Boolean(yes) => toml::Value::Boolean(yes),
-        DeValue::Datetime(instant) => toml::Value::Datetime(instant),
-        DeValue::Float(number) => toml::Value::Float(number.as_str().parse().unwrap_or(f64::NAN)),
-        DeValue::Integer(number) => match i64::from_str_radix(number.as_str(), number.radix()) {
-            Ok(whole) => toml::Value::Integer(whole),
-            // larger than any count: read as a number with a point
-            Err(_) => toml::Value::Float(number.as_str().parse().unwrap_or(f64::NAN)),
-        },
     }
 }

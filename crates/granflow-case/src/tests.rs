@@ -164,6 +164,21 @@ fn a_mountain() {
 }
 
 #[test]
+fn the_kind_is_chosen_by_model_and_place() {
+    let told = |text: &str| Case::parse(text, "t.toml").unwrap_err().to_string();
+    let mountain = "terrian = { dem = \"a\" }\nrelease = [{ raster = \"b\" }]";
+    assert!(told(mountain).contains("t.toml:1:1: `terrian`: unknown key `terrian`"), "{}", told(mountain));
+    assert!(told(mountain).contains("did you mean `terrain`?"), "{}", told(mountain));
+    assert!(told("[grdi]").contains("did you mean `grid`?"));
+    assert!(told("").contains("neither [grid] nor [terrain]"));
+    assert!(told("grid.x = 1\nterrain.dem = \"a\"").contains("both [grid] and [terrain]"));
+    assert!(told("model = \"hadeler_kuttler\"").contains("the case has no [grid]"));
+    assert!(told("model = 3").contains("allowed: savage_hutter, hadeler_kuttler"));
+    assert!(told("model = \"hadeler_kutler\"").contains("did you mean `hadeler_kuttler`?"));
+    assert!(told("grid.x = 1\nrelease = [{ raster = \"b\" }]").contains("[[release]] needs [terrain]"));
+}
+
+#[test]
 fn shapes_in_two_dimensions() {
     let at = |change: &str| {
         let grid = "grid={x={from=0,to=3,cells=3},y={from=0,to=4,cells=4}}";

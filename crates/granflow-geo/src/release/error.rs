@@ -123,6 +123,12 @@ pub enum ReleaseError {
         /// What probably helps.
         cure: String,
     },
+    /// There is no polygon in a file of outlines.
+    #[error("{path} holds no polygon", path = path.display())]
+    Empty {
+        /// The file.
+        path: PathBuf,
+    },
     /// Nothing is released.
     #[error("{path} releases nothing: {problem}", path = path.display())]
     Nothing {

@@ -14,14 +14,13 @@ impl Outlines {
     /// All polygons of a shapefile or GeoJSON file; where they overlap, each stands for itself.
     ///
     /// # Errors
-    /// [`ReleaseError`] for unreadable files, other shapes than polygons, rings that cross themselves.
+    /// [`ReleaseError`] for unreadable files, other shapes than polygons, rings that cross themselves, no polygon at all.
     pub fn read(path: &Path) -> Result<Self, ReleaseError> {
-        Ok(Self { polygons: Layer::read(path)?.outlines()? })
-    }
-
-    /// Whether there is no polygon.
-    pub fn is_empty(&self) -> bool {
-        self.polygons.is_empty()
+        let polygons = Layer::read(path)?.outlines()?;
+        match polygons.is_empty() {
+            true => Err(ReleaseError::Empty { path: path.into() }),
+            false => Ok(Self { polygons }),
+        }
     }
 
     /// Whether a place lies in a polygon or on its rim.
@@ -57,26 +56,28 @@ impl Outlines {
 mod tests {
     use super::*;
 
-    fn read(text: &str) -> Outlines {
+    fn read(text: &str) -> Result<Outlines, ReleaseError> {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("ring.geojson");
         std::fs::write(&path, text).unwrap();
-        Outlines::read(&path).unwrap()
+        Outlines::read(&path)
     }
 
     #[test]
     fn a_polygon_has_its_hole_not() {
         let ring = read(
             r#"{"type":"Polygon","coordinates":[[[0,0],[4,0],[4,4],[0,4],[0,0]],[[1,1],[1,3],[3,3],[3,1],[1,1]]]}"#,
-        );
+        )
+        .unwrap();
         assert!(ring.holds([0.5, 2.0]) && !ring.holds([2.0, 2.0]) && !ring.holds([5.0, 2.0]));
-        assert!(ring.holds([0.0, 2.0]) && !ring.is_empty(), "its rim belongs to it");
+        assert!(ring.holds([0.0, 2.0]), "its rim belongs to it");
         assert_eq!(ring.bounds(), [[0.0, 4.0]; 2]);
         assert_eq!([[0.5, 2.0], [2.0, 2.0], [7.0, 8.0]].map(|place| ring.depth(place)), [0.5, -1.0, -5.0]);
     }
 
     #[test]
-    fn a_file_may_hold_no_polygon() {
-        assert!(read(r#"{"type":"FeatureCollection","features":[]}"#).is_empty());
+    fn a_file_without_polygons_is_refused() {
+        let error = read(r#"{"type":"FeatureCollection","features":[]}"#).unwrap_err();
+        assert!(error.to_string().ends_with("ring.geojson holds no polygon"), "{error}");
     }
 }
