@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use granflow::output::figures::{
     Axis, Colours, Convergence, Curve, ErrorSeries, Extent, Figure, FigureError, Fill, Frame, HeatMap,
-    History, HistoryPanel, Map, Outline, Overlay, Paint, Profiles, Section, Style, Surface,
+    History, HistoryPanel, Map, Outline, Overlay, Paint, Profiles, Save as _, Section, Style, Surface,
 };
 
 /// A decoded PNG.
