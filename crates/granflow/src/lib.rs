@@ -70,12 +70,16 @@ pub mod describe;
 mod disk;
 pub mod model;
 pub mod models;
+#[cfg(feature = "files")]
 pub mod output;
 mod registry;
+#[cfg(feature = "files")]
 pub mod results;
 pub mod run;
+#[cfg(feature = "files")]
 pub mod session;
 pub mod sinks;
+#[cfg(all(feature = "geo", feature = "threads"))]
 pub mod speed;
 
 pub use case::{Case, Checked, StartError};

@@ -27,7 +27,7 @@ pub use history::history;
 pub use plane::Plane;
 #[cfg(feature = "figures")]
 pub use profiles::{Line, PILE, profiles};
-pub use quantity::{At, Kind, Quantity, Units};
+pub use quantity::{At, Field, Kind, Quantity, Units};
 #[cfg(feature = "figures")]
 pub use result_file::ResultFile;
 #[cfg(feature = "figures")]

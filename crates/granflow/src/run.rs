@@ -5,13 +5,16 @@
 //! steps a run to one of its [`Ends`] and lets [sinks](crate::sinks) look on.
 
 mod drive;
+mod entry;
 mod field_view;
 mod frames;
 mod record;
 mod saved;
 mod simulated;
+mod stop_reason;
 
 pub use drive::{DriveError, drive};
+pub use entry::{Entry, mass_error, sum};
 pub use field_view::FieldView;
 pub use frames::Frames;
 pub(crate) use frames::after;
@@ -20,6 +23,7 @@ pub use granflow_engine::simulation::{Failure, Totals};
 pub use record::Record;
 pub use saved::Saved;
 pub use simulated::{CellOf, Field, Numbers, Physics, Simulated, Value};
+pub use stop_reason::StopReason;
 
 pub use crate::model::Maps;
 use crate::model::Plane;

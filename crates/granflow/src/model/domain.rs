@@ -1,11 +1,10 @@
 //! A model and the places it flows on, as everything after a run sees them.
 
 use super::quantity::{Kind, Quantity, Units};
-use crate::output::netcdf::Crs;
-#[cfg(feature = "geo")]
+#[cfg(all(feature = "geo", feature = "files"))]
 use crate::output::outlines::Outline;
-use crate::output::report::Findings;
-use crate::output::summary::Summary;
+#[cfg(feature = "files")]
+use crate::output::{netcdf::Crs, report::Findings, summary::Summary};
 #[cfg(feature = "geo")]
 use crate::raster::Raster;
 use std::any::Any;
@@ -40,6 +39,7 @@ pub struct Model {
     pub last_instant: bool,
     /// The name of a scheme as figures write it.
     pub scheme_title: fn(&str) -> String,
+    #[cfg(feature = "files")]
     /// What a report says of a run, where layers thinner than the second argument are films.
     pub findings: fn(&Summary, f64) -> Findings,
     /// What is drawn of it; `None` for nothing.
@@ -56,6 +56,7 @@ impl Model {
         words: Words { wet: "wet cells", fastest: "speed" },
         last_instant: false,
         scheme_title: str::to_owned,
+        #[cfg(feature = "files")]
         findings: |summary, _| Findings::of(summary),
         #[cfg(feature = "figures")]
         pictures: None,
@@ -115,6 +116,7 @@ pub trait Domain: Any + fmt::Debug + Send + Sync {
     }
 
     /// The coordinate reference system of x and y.
+    #[cfg(feature = "files")]
     fn crs(&self) -> Option<Crs> {
         None
     }
@@ -136,10 +138,11 @@ pub trait Domain: Any + fmt::Debug + Send + Sync {
     }
 
     /// Maps and numbers of the summary that follow from the maps, given the cells' centres along x and y.
+    #[cfg(feature = "files")]
     fn derive(&self, _centres: [&[f64]; 2], _maps: &mut Maps, _summary: &mut Summary) {}
 
     /// The areas that `outlines.geojson` shows.
-    #[cfg(feature = "geo")]
+    #[cfg(all(feature = "geo", feature = "files"))]
     fn outlines(&self, _maps: &Maps) -> Vec<Outline> {
         Vec::new()
     }

@@ -1,9 +1,11 @@
 //! Where a run took place: its cells, and what lies under them.
 
-use super::domain::{Domain, Maps, Model};
-use super::quantity::{At, Kind};
+#[cfg(feature = "files")]
+use super::domain::Maps;
+use super::domain::{Domain, Model};
+use super::quantity::{At, Field, Kind};
 use crate::grid::Grid;
-use crate::output::frames::Field;
+#[cfg(feature = "files")]
 use crate::output::summary::Summary;
 use std::sync::Arc;
 
@@ -82,6 +84,7 @@ impl Plane {
         self.model().outlets
     }
 
+    #[cfg(feature = "files")]
     /// Add the maps and the numbers of the summary that follow from the maps of a run.
     pub fn derive(&self, maps: &mut Maps, summary: &mut Summary) {
         self.domain.derive([&self.x, &self.y], maps, summary);

@@ -7,6 +7,7 @@
 //! for beside the steps.
 
 use super::{Error, Precision, Summed, whole_file};
+pub use crate::model::Field;
 use serde::{Deserialize, Serialize};
 use std::fmt;
 use std::fs::{File, OpenOptions};
@@ -18,15 +19,6 @@ const MAGIC: &[u8] = b"granflow frames 1\n";
 
 /// Bytes of a frame that are checked in one go.
 const AT_ONCE: usize = 1 << 18;
-
-/// A named field of every frame and how many numbers it has.
-#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
-pub struct Field {
-    /// The name, as the variable of the result is called.
-    pub name: String,
-    /// How many numbers one frame holds.
-    pub length: usize,
-}
 
 #[derive(Serialize, Deserialize)]
 struct Header {

@@ -1,7 +1,6 @@
 //! The loop: steps until one of a run's ends is reached, sinks looking on.
 
-use super::{Ends, Failure, Run, Until};
-use crate::output::summary::StopReason;
+use super::{Ends, Failure, Run, StopReason, Until};
 use crate::sinks::{Sink, SinkError};
 
 /// Why a run did not reach an end.

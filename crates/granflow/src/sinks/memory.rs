@@ -3,12 +3,11 @@
 use super::schedule::{Due, Schedule};
 use super::{Sink, SinkError};
 use crate::model::Plane;
-use crate::output::ledger::Entry;
 #[cfg(feature = "files")]
 use crate::output::{Error, netcdf::Values};
 #[cfg(feature = "files")]
 use crate::results::{About, dataset};
-use crate::run::{Maps, Run};
+use crate::run::{Entry, Maps, Run};
 use granflow_case::Frames;
 #[cfg(feature = "files")]
 use granflow_case::Precision;

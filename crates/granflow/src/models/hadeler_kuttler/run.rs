@@ -4,5 +4,6 @@ pub(crate) mod describe;
 mod pouring;
 pub mod sandpile;
 pub mod site;
+#[cfg(all(feature = "geo", feature = "threads"))]
 pub(crate) mod speed;
 pub(crate) mod start;

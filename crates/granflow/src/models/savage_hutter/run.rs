@@ -4,6 +4,7 @@ pub mod avalanche;
 pub(crate) mod chute;
 pub(crate) mod describe;
 pub(crate) mod flowing;
+#[cfg(all(feature = "geo", feature = "threads"))]
 pub(crate) mod speed;
 #[cfg(feature = "geo")]
 pub(crate) mod terrain;

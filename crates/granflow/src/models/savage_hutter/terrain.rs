@@ -2,8 +2,11 @@
 
 use super::MODEL;
 use crate::model::{Domain, Maps, Model, Quantity, Units};
+#[cfg(feature = "files")]
 use crate::output::netcdf::Crs;
+#[cfg(feature = "files")]
 use crate::output::outlines::{Lattice, Outline, contour};
+#[cfg(feature = "files")]
 use crate::output::summary::Summary;
 use crate::raster::Raster;
 use crate::release::Sparse;
@@ -48,6 +51,7 @@ impl Domain for TerrainDomain {
         Some(&self.raster.values)
     }
 
+    #[cfg(feature = "files")]
     fn crs(&self) -> Option<Crs> {
         self.raster.crs.as_ref().map(|crs| Crs { epsg: crs.epsg, wkt: crs.wkt.clone() })
     }
@@ -66,6 +70,7 @@ impl Domain for TerrainDomain {
     }
 
     /// The peak pressure, runout and reach angle.
+    #[cfg(feature = "files")]
     fn derive(&self, centres: [&[f64]; 2], maps: &mut Maps, summary: &mut Summary) {
         let Some((_, speed)) = maps.iter().find(|(name, _)| *name == "peak_speed") else { return };
         let pressure: Vec<f64> = speed.iter().map(|v| self.density * v * v / 1000.0).collect();
@@ -77,6 +82,7 @@ impl Domain for TerrainDomain {
     }
 
     /// Release, deposit, and all that was reached.
+    #[cfg(feature = "files")]
     fn outlines(&self, maps: &Maps) -> Vec<Outline> {
         let lattice = Lattice::from(&*self.raster);
         let outline = |name: &str, map: &[f64], threshold: f64| Outline {

@@ -5,10 +5,9 @@ use super::writer::Writer;
 use crate::case::FileKind;
 use crate::model::Plane;
 use crate::output::frames::Frames;
-use crate::output::ledger::{Entry, mass_error, sum};
 use crate::output::summary::{StopReason, Summary};
 use crate::results::Finished;
-use crate::run::{Maps, Run, Until};
+use crate::run::{Entry, Maps, Run, Until, mass_error, sum};
 use std::path::PathBuf;
 
 /// A finished run but for its series and its ledger, which the writer has.

@@ -1,16 +1,21 @@
 //! What an avalanche would compute: material, bed, mass, pull.
 
-use super::{chute, terrain};
+use super::chute;
+#[cfg(feature = "geo")]
+use super::terrain;
 use crate::StartError;
 use crate::describe::{Line, axis, case, effort, range};
 use crate::run::Run;
 use granflow_case::avalanche::Material;
-use granflow_case::terrain::Order;
+use granflow_case::chute::Plan as OnChute;
+#[cfg(feature = "geo")]
+use granflow_case::terrain::{Order, Plan as OnTerrain};
 use granflow_case::{Axis, RunPlan, Side};
-use granflow_case::{chute::Plan as OnChute, terrain::Plan as OnTerrain};
+#[cfg(feature = "geo")]
 use granflow_geo::terrain::Terrain;
 
 /// A fast avalanche \[m/s\].
+#[cfg(feature = "geo")]
 const FAST: f64 = 30.0;
 
 /// The lines about an avalanche on a chute.
@@ -23,6 +28,7 @@ pub(crate) fn chute(run: &RunPlan, plan: OnChute) -> Result<Vec<Line>, StartErro
 }
 
 /// The lines about an avalanche on a mountain.
+#[cfg(feature = "geo")]
 pub(crate) fn terrain(run: &RunPlan, plan: &OnTerrain) -> Result<Vec<Line>, StartError> {
     let order = match plan.scheme {
         Order::First => "first order",
@@ -81,6 +87,7 @@ fn grid(plan: &OnChute) -> Vec<Line> {
     lines
 }
 
+#[cfg(feature = "geo")]
 /// A mountain: size, steepness, curvature under a fast mass.
 fn mountain(terrain: &Terrain) -> Vec<Line> {
     let bed = &terrain.bed;

@@ -1,0 +1,38 @@
+//! Why a run ended.
+
+use serde::{Deserialize, Serialize};
+use std::fmt;
+
+/// Why a run ended; `summary.json` holds it in snake case, as in "at_rest".
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum StopReason {
+    /// Every cell is at rest and admissible: the mass has come to rest.
+    AtRest,
+    /// Nothing changes any more.
+    Steady,
+    /// The end time of the case was reached.
+    EndTime,
+    /// The number of steps of the case was done.
+    Steps,
+    /// The kinetic energy fell below the share of its peak that the case names.
+    KineticEnergy,
+    /// The largest speed fell below the case's `rest_speed`.
+    BelowSpeed,
+    /// The user interrupted it; `--resume` goes on.
+    Interrupted,
+}
+
+impl fmt::Display for StopReason {
+    fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
+        out.write_str(match self {
+            Self::AtRest => "at rest",
+            Self::Steady => "steady",
+            Self::EndTime => "end time reached",
+            Self::Steps => "number of steps done",
+            Self::KineticEnergy => "kinetic energy below its limit",
+            Self::BelowSpeed => "speed below its limit",
+            Self::Interrupted => "interrupted",
+        })
+    }
+}
