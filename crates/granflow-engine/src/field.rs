@@ -2,8 +2,8 @@
 
 use crate::disjoint::DisjointSlice;
 use crate::grid::Layout;
+use crate::parallel;
 use granflow_model::scheme::Components;
-use rayon::prelude::*;
 use std::marker::PhantomData;
 
 /// The most components that a value of a cell may have: a state, a ground. (Face states and fluxes may have any number.)
@@ -81,7 +81,7 @@ impl Field {
             self.doubles.iter_mut().map(|part| DisjointSlice::new(part)).collect();
         let singles: Vec<DisjointSlice<f32>> =
             self.singles.iter_mut().map(|part| DisjointSlice::new(part)).collect();
-        (0..layout.rows).into_par_iter().for_each(|row| {
+        parallel::for_each(layout.rows, |row| {
             for column in 0..layout.columns {
                 let place = layout.place(column as isize, row as isize);
                 value(column, row).store(|k, part| {

@@ -2,7 +2,7 @@
 
 use crate::field::Field;
 use crate::grid::Layout;
-use crate::kernels::Kernel;
+use crate::kernel::Kernel;
 use crate::observe::Maps;
 use crate::simulation::{Failure, SimdLevel, Simulation, Totals, Traffic};
 use crate::tiles::OUTLETS;

@@ -10,17 +10,17 @@ mod scratch;
 mod strip;
 
 use crate::disjoint::DisjointSlice;
-use crate::lanes::{SimdContext, SimdKernel, SimdVector};
+use crate::lanes::{Contexts, SimdContext, SimdKernel, SimdVector};
+use crate::parallel;
 use crate::tiles::{TileBlock, TileStats};
 use granflow_model::scheme::{Components, Scheme, SchemeVisitor};
 pub use plan::{Output, Sweep};
-use rayon::prelude::*;
 use scratch::Workspace;
 use strip::Targets;
 
 impl Sweep<'_> {
-    /// Compute the tiles that are awake.
-    pub fn run<const D: usize, S: Scheme<D, f64>>(&self, scheme: &S, output: Output) {
+    /// Compute the tiles that are awake, with the instructions that the functions of `C` allow.
+    pub fn run<const D: usize, S: Scheme<D, f64>, C: Contexts>(&self, scheme: &S, output: Output) {
         const {
             let masks = <S::State as Components<f64>>::F32_MASK | <S::State as Components<f64>>::UNIFORM_MASK;
             assert!(masks == 0, "a state is kept in double precision in every cell");
@@ -38,7 +38,7 @@ impl Sweep<'_> {
         };
         let stats = DisjointSlice::new(&mut stats[..self.awake.len()]);
         let changes = DisjointSlice::new(&mut changes[..self.awake.len() * tracked]);
-        self.simd.run(Tiles::<D, S> { sweep: self, scheme, targets, stats, changes });
+        self.simd.run::<C, _>(Tiles::<D, S> { sweep: self, scheme, targets, stats, changes });
     }
 }
 
@@ -82,8 +82,8 @@ impl<const D: usize, L: SimdVector, S: Scheme<D, f64>, I: SimdContext> SchemeVis
         let OnLanes { tiles: Tiles { sweep, targets, stats, changes, .. }, context } = self;
         let Sweep { tiles, awake, blocks, .. } = *sweep;
         let tracked = tracked::<D, S>();
-        let chunk = blocks.len().div_ceil(32 * rayon::current_num_threads()).max(1);
-        blocks.par_chunks(chunk).with_max_len(1).for_each(|blocks| {
+        let chunk = blocks.len().div_ceil(32 * parallel::threads()).max(1);
+        parallel::for_each_chunk(blocks, chunk, |blocks| {
             Workspace::with::<D, L, T>(|memory| {
                 context.call(
                     #[inline(always)]

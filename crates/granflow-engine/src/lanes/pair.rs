@@ -1,6 +1,6 @@
 //! Two vectors as one: while one waits for a division or a root, the other goes on.
 
-use super::SimdVector;
+use super::vector::SimdVector;
 use granflow_model::real::Real;
 use std::ops::{Add, BitAnd, BitOr, Div, Mul, Neg, Not, Sub};
 

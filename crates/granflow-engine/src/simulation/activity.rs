@@ -1,6 +1,7 @@
 //! Which tiles are computed and which sleep.
 
 use super::state::Simulation;
+use crate::parallel;
 use crate::tiles::{MAX_TILES, STRIP, TileBlock, TileStats, tile_size};
 use granflow_model::scheme::{Boundary, Scheme};
 
@@ -25,7 +26,7 @@ impl<const D: usize, S: Scheme<D, f64>> Simulation<D, S> {
         self.find_frontier();
         let across = self.across;
         let wide = across.min((STRIP - 2) / tile_size(D)[0]);
-        let high = (self.frontier.len() / (wide * 4 * rayon::current_num_threads())).clamp(1, MAX_TILES);
+        let high = (self.frontier.len() / (wide * 4 * parallel::threads())).clamp(1, MAX_TILES);
         self.awake.clear();
         self.blocks.clear();
         for &number in &self.frontier {

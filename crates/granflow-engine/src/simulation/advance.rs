@@ -4,7 +4,7 @@ use super::error::Failure;
 use super::state::Simulation;
 use crate::boundary;
 use crate::grid::GHOSTS;
-use crate::kernels::Kernel;
+use crate::kernel::Kernel;
 use crate::sweep::{Output, Sweep, tracked};
 use crate::tiles::{OUTLETS, TileStats};
 

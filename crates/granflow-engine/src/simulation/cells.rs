@@ -2,8 +2,8 @@
 
 use super::state::Simulation;
 use crate::boundary;
+use crate::parallel;
 use granflow_model::scheme::{Cell, Diagnostics, Scheme, Spacing, Stencil};
-use rayon::prelude::*;
 
 /// The cells around one, outside a sweep.
 struct Around<'a, const D: usize, S: Scheme<D, f64>> {
@@ -41,13 +41,13 @@ impl<const D: usize, S: Scheme<D, f64>> Simulation<D, S> {
     /// Pull as a share of the static bound, [`Scheme::yield_ratio`], in every cell, x fastest.
     pub fn yield_ratios(&mut self) -> Vec<f64> {
         boundary::fill(&mut self.now, &self.grid, &self.layout, |axis, s| self.scheme.mirror(axis, &s));
-        let margin = |number: usize| {
+        let ratio = |number: usize| {
             let index = self.grid.index(number);
             let outside = self.scheme.is_nodata(&self.ground(index));
             let around = Around { simulation: self, place: self.place(index) };
             if outside { 0.0 } else { self.scheme.yield_ratio(&around) }
         };
-        (0..self.grid.count()).into_par_iter().map(margin).collect()
+        parallel::map(self.grid.count(), ratio)
     }
     /// What is made of every cell, x fastest.
     pub fn collect<T>(&self, value: impl Fn(&Cell<S::State, S::Ground>) -> T) -> Vec<T> {
@@ -80,8 +80,9 @@ impl<const D: usize, S: Scheme<D, f64>> Simulation<D, S> {
     pub fn map(&self, value: impl Fn(&Cell<S::State, S::Ground>) -> f64 + Sync) -> Vec<f64> {
         const AT_ONCE: usize = 1 << 14;
         let mut values = vec![0.0; self.grid.count()];
-        let parts = values.par_chunks_mut(AT_ONCE).enumerate();
-        parts.for_each(|(k, part)| self.fill(self.layout.columns, k * AT_ONCE, part, &value));
+        parallel::for_each_chunk_mut(&mut values, AT_ONCE, |from, part| {
+            self.fill(self.layout.columns, from, part, &value);
+        });
         values
     }
 }

@@ -2,10 +2,10 @@
 
 use super::state::{Simulation, TileRowMax};
 use super::step_size::StepSize;
+use crate::parallel;
 use crate::sweep::tracked;
-use crate::tiles::{Tile, TileStats};
+use crate::tiles::TileStats;
 use granflow_model::scheme::Scheme;
-use rayon::prelude::*;
 
 impl<const D: usize, S: Scheme<D, f64>> Simulation<D, S> {
     /// max over cells of |change of each component of the state|/dt in the last step. Infinite before the first, after a step that
@@ -24,10 +24,10 @@ impl<const D: usize, S: Scheme<D, f64>> Simulation<D, S> {
     }
     /// Rates and speeds of the state as it stands (needed once, before the first step or after a restart).
     pub(super) fn rescan(&mut self) {
-        let rescan = |tile: &Tile| {
+        let rescan = |number: usize| {
             let mut stats = TileStats::NONE;
             let mut square = 0.0;
-            self.visit(tile, |cell| {
+            self.visit(&self.tiles[number], |cell| {
                 let rate = self.scheme.rate(cell, &self.spacing);
                 stats.rate = if stats.rate < rate { rate } else { stats.rate };
                 square = self.scheme.diagnostics(cell).speed_squared.max(square);
@@ -35,7 +35,7 @@ impl<const D: usize, S: Scheme<D, f64>> Simulation<D, S> {
             stats.speed = square.sqrt();
             stats
         };
-        self.stats = self.tiles.par_iter().map(rescan).collect();
+        self.stats = parallel::map(self.tiles.len(), rescan);
         // Nothing is known of the change before the next step.
         self.changes.fill(f64::INFINITY);
         self.outdated.fill(true);

@@ -2,18 +2,18 @@
 
 use super::state::Simulation;
 use super::totals::Totals;
+use crate::parallel;
 use crate::tiles::Tile;
 use granflow_model::real::CompensatedSum;
 use granflow_model::scheme::{Cell, Scheme};
-use rayon::prelude::*;
 
 impl<const D: usize, S: Scheme<D, f64>> Simulation<D, S> {
     /// Sums over all cells, compensated and in fixed order; cells that changed since [`Simulation::take_sums`] are looked at.
     pub fn totals(&self) -> Totals {
-        let sum = |(number, sums): (usize, &Totals)| {
-            if self.outdated[number] { self.totals_of(&self.tiles[number]) } else { *sums }
+        let sum = |number: usize| {
+            if self.outdated[number] { self.totals_of(&self.tiles[number]) } else { self.sums[number] }
         };
-        let parts: Vec<Totals> = self.sums.par_iter().enumerate().map(sum).collect();
+        let parts = parallel::map(self.tiles.len(), sum);
         let (mut volume, mut film) = (CompensatedSum::default(), CompensatedSum::default());
         let mut totals = Totals { speed: self.speed(), ..Totals::default() };
         for part in parts {
@@ -31,9 +31,13 @@ impl<const D: usize, S: Scheme<D, f64>> Simulation<D, S> {
     /// Take the sums over the cells that have changed, so that [`Simulation::totals`] need not.
     pub fn take_sums(&mut self) {
         let mut sums = std::mem::take(&mut self.sums);
-        sums.par_iter_mut().zip(&self.tiles).zip(&self.outdated).for_each(|((sums, tile), &outdated)| {
-            if outdated {
-                *sums = self.totals_of(tile);
+        /// Tiles that a thread takes at once.
+        const AT_ONCE: usize = 16;
+        parallel::for_each_chunk_mut(&mut sums, AT_ONCE, |from, sums| {
+            for (number, sums) in (from..).zip(sums) {
+                if self.outdated[number] {
+                    *sums = self.totals_of(&self.tiles[number]);
+                }
             }
         });
         self.sums = sums;
