@@ -205,7 +205,7 @@ impl<const D: usize, R: Real> Scheme<D, R> for SaintVenant {
     }
 }
 
-granflow::kernels::kernel! { SaintVenant }
+granflow::kernel!(saint_venant: SaintVenant);
 
 /// What files say of the model.
 static MODEL: Model = Model {

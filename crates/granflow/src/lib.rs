@@ -83,7 +83,7 @@ pub mod sinks;
 pub mod speed;
 
 pub use case::{Case, Checked, StartError};
-pub use granflow_engine::{grid, kernels, simulation};
+pub use granflow_engine::{grid, kernel, kernels, simulation};
 #[cfg(feature = "geo")]
 pub use granflow_geo::{raster, release, terrain};
 pub use granflow_model::{hadeler_kuttler, limiter, real, savage_hutter, scheme, time};

@@ -1,7 +1,9 @@
 //! A mountain: where an avalanche flows in SI units, and what follows there from its maps.
 
 use super::MODEL;
-use crate::model::{Domain, Maps, Model, Quantity, Units};
+#[cfg(feature = "files")]
+use crate::model::Maps;
+use crate::model::{Domain, Model, Quantity, Units};
 #[cfg(feature = "files")]
 use crate::output::netcdf::Crs;
 #[cfg(feature = "files")]
@@ -14,8 +16,10 @@ use std::borrow::Cow;
 use std::sync::Arc;
 
 /// A cell counts as reached above this peak thickness \[m\].
+#[cfg(feature = "files")]
 pub(super) const REACHED: f64 = 0.1;
 /// The peak pressure that counts as reached, for the runout \[kPa\].
+#[cfg(feature = "files")]
 const REACHED_PRESSURE: f64 = 1.0;
 
 /// A mountain; lengths are metres, times seconds.
@@ -103,6 +107,7 @@ impl Domain for TerrainDomain {
 
 impl TerrainDomain {
     /// The thickness that outlines the release: as of the other outlines, less where all is thinner.
+    #[cfg(feature = "files")]
     pub(super) fn release_threshold(&self) -> f64 {
         let largest = self.release.most();
         if largest > 0.0 { REACHED.min(0.5 * largest) } else { REACHED }
@@ -110,6 +115,7 @@ impl TerrainDomain {
 
     /// Horizontal length, and drop, from the highest released cell to the farthest that the mass reached with a
     /// peak pressure of [`REACHED_PRESSURE`].
+    #[cfg(feature = "files")]
     fn runout(&self, [x, y]: [&[f64]; 2], pressure: &[f64]) -> Option<(f64, f64)> {
         let bed = &self.raster.values;
         let columns = x.len();
