@@ -5,8 +5,8 @@ use std::path::PathBuf;
 use std::time::Duration;
 
 use granflow::case::nearest;
-use granflow::simulation::Instructions;
-use granflow::speed::{Extent, SETUPS, Setup, SpeedError, Triad, spells};
+use granflow::simulation::SimdLevel;
+use granflow::speed::{Extent, Setup, SpeedError, Triad, setups, spells};
 
 use crate::failure::{Failure, print};
 
@@ -60,7 +60,7 @@ struct Plan {
     setups: Vec<&'static Setup>,
     cells: Vec<usize>,
     threads: Vec<usize>,
-    instructions: Instructions,
+    instructions: SimdLevel,
 }
 
 /// Measures and prints a table, row by row.
@@ -80,8 +80,8 @@ pub fn bench(options: &Options) -> Result<(), Failure> {
     let (repeats, seconds) = if options.quick { (3, 0.02) } else { (5, 0.3) };
     for setup in plan.setups {
         for cells in sizes(setup, &plan.cells) {
-            let mut load = setup.begin(Extent { cells, wet: options.wet });
-            load.use_instructions(plan.instructions);
+            let mut load = setup.start(Extent { cells, wet: options.wet });
+            load.use_simd(plan.instructions);
             for &threads in &plan.threads {
                 let spells = spells(load.as_mut(), threads, repeats, Duration::from_secs_f64(seconds));
                 let row = Row::new(setup, cells, threads, load.as_ref(), &spells?);
@@ -115,13 +115,13 @@ fn sizes(setup: &Setup, asked: &[usize]) -> Vec<usize> {
 /// Checks everything that can be wrong before work starts.
 fn plan(options: &Options) -> Result<Plan, Failure> {
     let setups = match options.scheme.as_slice() {
-        [] => SETUPS.iter().filter(|setup| setup.dry || options.wet == 1.0).collect(),
+        [] => setups().filter(|setup| setup.dry || options.wet == 1.0).collect(),
         names => names.iter().map(|name| named(name)).collect::<Result<_, _>>()?,
     };
     let instructions = match options.instructions.as_str() {
-        "widest" => Instructions::Widest,
-        "narrow" => Instructions::Narrow,
-        "scalar" => Instructions::Scalar,
+        "widest" => SimdLevel::Best,
+        "narrow" => SimdLevel::Avx2,
+        "scalar" => SimdLevel::Scalar,
         other => {
             let message = format!("there are no instructions `{other}`");
             return Err(Failure::usage(message, "allowed: widest, narrow, scalar"));
@@ -157,8 +157,8 @@ fn plan(options: &Options) -> Result<Plan, Failure> {
 }
 
 fn named(name: &str) -> Result<&'static Setup, Failure> {
-    SETUPS.iter().find(|setup| setup.name == name).ok_or_else(|| {
-        let names = || SETUPS.iter().map(|setup| setup.name);
+    setups().find(|setup| setup.name == name).ok_or_else(|| {
+        let names = || setups().map(|setup| setup.name);
         let near = nearest(name, names()).map(|near| format!("did you mean `{near}`? ")).unwrap_or_default();
         Failure::usage(
             format!("there is no scheme `{name}` to measure"),

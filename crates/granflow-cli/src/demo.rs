@@ -3,8 +3,7 @@
 use std::fs;
 use std::path::Path;
 
-use granflow::Disk;
-use granflow::case::Case;
+use granflow::Case;
 
 use crate::failure::{Failure, print};
 use crate::run::{RunOptions, compute};
@@ -21,7 +20,7 @@ pub fn demo(out: &Path) -> Result<(), Failure> {
     ] {
         fs::write(&path, text).map_err(|error| Failure::file("write", &path, &error))?;
     }
-    let case = Case::read(&file)?.check(&Disk)?;
+    let case = Case::read(&file)?.check()?;
     let finished = compute(case, &RunOptions { out: Some(out.to_owned()), ..RunOptions::default() })?;
     let summary = &finished.summary;
     let number = |value: Option<f64>| value.map_or_else(|| "-".to_owned(), |value| format!("{value:.1}"));

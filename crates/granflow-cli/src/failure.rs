@@ -1,15 +1,16 @@
 //! How the program fails: the message and the exit status, in one place.
 
-use std::fmt;
 use std::io::{self, Write};
 use std::path::Path;
 use std::process::ExitCode;
 
+use granflow::StartError;
 use granflow::case::{CaseError, CaseErrorKind};
 use granflow::results::FilesError;
-use granflow::run::RunError;
-use granflow::setup::SetupError;
-use miette::{Diagnostic, LabeledSpan, NamedSource, SourceCode};
+use granflow::session::RunError;
+use granflow::sinks::BeginError;
+
+use crate::snippet::{self, Ink};
 
 /// Why a command did not do what it was asked.
 #[derive(Debug)]
@@ -22,7 +23,7 @@ pub enum Failure {
         cure: String,
     },
     /// The case is wrong (2), or a file it needs cannot be read (4).
-    Case(Box<CaseReport>),
+    Case(CaseError),
     /// The computation failed; the message names the state that was saved (3).
     Computation(String),
     /// A file could not be read or written (4).
@@ -46,7 +47,7 @@ impl Failure {
     fn status(&self) -> u8 {
         match self {
             Self::Usage { .. } => 2,
-            Self::Case(report) => match report.error.kind() {
+            Self::Case(error) => match error.kind() {
                 CaseErrorKind::Invalid => 2,
                 CaseErrorKind::File => 4,
             },
@@ -61,7 +62,7 @@ impl Failure {
         let status = ExitCode::from(self.status());
         let text = match self {
             Self::Usage { message, cure } => format!("error: {message}\n  help: {cure}\n"),
-            Self::Case(report) => format!("{:?}\n", miette::Report::new(*report)),
+            Self::Case(error) => snippet::shown(&error, Ink::of_standard_error()),
             Self::Computation(message) | Self::File(message) => format!("error: {message}\n"),
             Self::Interrupted(message) => format!("interrupted: {message}\n"),
         };
@@ -73,16 +74,19 @@ impl Failure {
 
 impl From<CaseError> for Failure {
     fn from(error: CaseError) -> Self {
-        let source = NamedSource::new(error.source_name(), error.text().to_owned());
-        Self::Case(Box::new(CaseReport { source, error }))
+        Self::Case(error)
     }
 }
 
-impl From<SetupError> for Failure {
-    fn from(error: SetupError) -> Self {
+impl From<StartError> for Failure {
+    fn from(error: StartError) -> Self {
         match error {
-            SetupError::Case(error) => error.into(),
-            SetupError::Raster(_) | SetupError::Release(_) => Self::File(error.to_string()),
+            StartError::Case(error) => error.into(),
+            StartError::Raster(_) | StartError::Release(_) => Self::File(error.to_string()),
+            StartError::Build(_) => Self::Computation(error.to_string()),
+            StartError::Feature { .. } => {
+                Self::usage(error.to_string(), "cargo build with default features has all")
+            }
         }
     }
 }
@@ -90,11 +94,12 @@ impl From<SetupError> for Failure {
 impl From<RunError> for Failure {
     fn from(error: RunError) -> Self {
         match error {
-            RunError::Setup(error) => error.into(),
-            RunError::Output(_) | RunError::Files(_) => Self::File(error.to_string()),
+            RunError::Start(error) => error.into(),
+            RunError::Begin(BeginError::Thread(_)) | RunError::Threads(_) => {
+                Self::usage(error.to_string(), "try a smaller --threads")
+            }
+            RunError::Begin(_) | RunError::Output(_) | RunError::Files(_) => Self::File(error.to_string()),
             RunError::Computation { .. } => Self::Computation(error.to_string()),
-            RunError::Threads(_) => Self::usage(error.to_string(), "try a smaller --threads"),
-            RunError::Resume { .. } => Self::File(error.to_string()),
         }
     }
 }
@@ -102,40 +107,6 @@ impl From<RunError> for Failure {
 impl From<FilesError> for Failure {
     fn from(error: FilesError) -> Self {
         Self::File(error.to_string())
-    }
-}
-
-/// A case error with the lines it stands in, as miette shows it.
-#[derive(Debug)]
-pub struct CaseReport {
-    error: CaseError,
-    source: NamedSource<String>,
-}
-
-impl fmt::Display for CaseReport {
-    fn fmt(&self, to: &mut fmt::Formatter) -> fmt::Result {
-        to.write_str(&self.error.headline())
-    }
-}
-
-impl std::error::Error for CaseReport {}
-
-impl Diagnostic for CaseReport {
-    fn help(&self) -> Option<Box<dyn fmt::Display + '_>> {
-        let lines = self.error.help_lines();
-        if lines.is_empty() { None } else { Some(Box::new(lines.join("\n"))) }
-    }
-
-    fn source_code(&self) -> Option<&dyn SourceCode> {
-        self.error.span().map(|_| &self.source as &dyn SourceCode)
-    }
-
-    fn labels(&self) -> Option<Box<dyn Iterator<Item = LabeledSpan> + '_>> {
-        let span = self.error.span()?;
-        // a place behind the last byte (a bracket that never closes) is shown at the last byte
-        let start = span.start.min(self.error.text().len());
-        let length = span.len().min(self.error.text().len() - start);
-        Some(Box::new(std::iter::once(LabeledSpan::new(Some("here".to_owned()), start, length))))
     }
 }
 

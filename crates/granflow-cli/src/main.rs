@@ -4,8 +4,7 @@ use std::path::PathBuf;
 use std::process::ExitCode;
 
 use clap::{Parser, Subcommand};
-use granflow::Disk;
-use granflow::case::{Case, Checked};
+use granflow::{Case, Checked};
 
 mod bench;
 mod check;
@@ -19,6 +18,7 @@ mod progress;
 mod reproduce;
 mod run;
 mod schema;
+mod snippet;
 
 use failure::Failure;
 
@@ -120,10 +120,6 @@ enum Command {
 }
 
 fn main() -> ExitCode {
-    // a closed pipe or a refused hook is no reason to fail: the default report is readable too
-    let _ = miette::set_hook(Box::new(|_| {
-        Box::new(miette::MietteHandlerOpts::new().wrap_lines(false).break_words(false).build())
-    }));
     match act(Arguments::parse().command) {
         Ok(()) => ExitCode::SUCCESS,
         Err(failure) => failure.report(),
@@ -133,13 +129,10 @@ fn main() -> ExitCode {
 fn act(command: Command) -> Result<(), Failure> {
     match command {
         Command::Run { case, out, set, threads, resume, quiet } => {
-            let (_, checked) = read(&case, &set)?;
-            run::run(checked, &run::RunOptions { out, threads, resume, quiet })
+            let case = read(&case, &set)?;
+            run::run(case, &run::RunOptions { out, threads, resume, quiet })
         }
-        Command::Check { case, set } => {
-            let (case, checked) = read(&case, &set)?;
-            check::check(&case, checked)
-        }
+        Command::Check { case, set } => check::check(read(&case, &set)?),
         Command::New { list: true, .. } => new::list(),
         Command::New { kind: None, .. } => {
             Err(Failure::usage("which kind of case?", "granflow new --list shows the kinds"))
@@ -154,8 +147,6 @@ fn act(command: Command) -> Result<(), Failure> {
 }
 
 /// Reads a case with its overrides and checks it.
-fn read(path: &std::path::Path, overrides: &[String]) -> Result<(Case, Checked), Failure> {
-    let case = Case::read_with(path, overrides)?;
-    let checked = case.check(&Disk)?;
-    Ok((case, checked))
+fn read(path: &std::path::Path, overrides: &[String]) -> Result<Checked, Failure> {
+    Ok(Case::read_with(path, overrides)?.check()?)
 }

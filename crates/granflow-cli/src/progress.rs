@@ -3,30 +3,31 @@
 use std::io::{self, IsTerminal, Write};
 use std::time::{Duration, Instant};
 
-use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
+use granflow::Words;
+use granflow::run::Run;
 
 /// Between two plain lines.
 const PLAIN: Duration = Duration::from_secs(5);
 /// Between two looks at the clock that redraw the bar.
 const BAR: Duration = Duration::from_millis(100);
-/// Parts of the bar.
-const PARTS: u64 = 1000;
+/// Letters of the bar.
+const WIDTH: usize = 24;
 
 /// Where a run is.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Status {
+struct Status {
     /// Simulated time.
-    pub time: f64,
+    time: f64,
     /// Simulated time at which the run ends at the latest, if it is known.
-    pub end: Option<f64>,
+    end: Option<f64>,
     /// Steps done.
-    pub step: u64,
-    /// Cells that hold more than a film, or on a sandpile some sand.
-    pub wet_cells: usize,
-    /// Largest speed of a cell, or on a sandpile the largest thickness of the rolling layer.
-    pub most: f64,
-    /// Is it a sandpile?
-    pub sand: bool,
+    step: u64,
+    /// Cells with a depth at the last line of the ledger.
+    wet_cells: usize,
+    /// Largest speed of a cell, or what the model shows in its place.
+    fastest: f64,
+    /// How the model calls the two.
+    words: Words,
 }
 
 impl Status {
@@ -38,18 +39,13 @@ impl Status {
 
     /// One line of words and numbers; `elapsed` is the wall time since `begin`, the share at the start.
     fn line(&self, begin: f64, elapsed: Duration) -> String {
-        let Self { time, end, step, wet_cells, most, sand } = self;
+        let Self { time, end, step, wet_cells, fastest, words: Words { wet, fastest: name } } = self;
         let end = end.map(|end| format!(" of {end:.4}")).unwrap_or_default();
         let left = self
             .left(begin, elapsed)
-            .map(|left| format!(", at most {} left", words(left)))
+            .map(|left| format!(", at most {} left", duration(left)))
             .unwrap_or_default();
-        let state = if *sand {
-            format!("{wet_cells} cells with sand, rolling layer at most {most:.3e}")
-        } else {
-            format!("{wet_cells} wet cells, speed {most:.3e}")
-        };
-        format!("time {time:.4}{end}, step {step}, {state}{left}")
+        format!("time {time:.4}{end}, step {step}, {wet_cells} {wet}, {name} {fastest:.3e}{left}")
     }
 
     /// Wall time left if the rest goes as fast as what was done.
@@ -61,7 +57,7 @@ impl Status {
 }
 
 /// A wall time in words.
-fn words(time: Duration) -> String {
+fn duration(time: Duration) -> String {
     let seconds = time.as_secs();
     match seconds {
         0..60 => format!("{seconds} s"),
@@ -70,60 +66,98 @@ fn words(time: Duration) -> String {
     }
 }
 
+/// Where the status is shown.
+#[derive(Debug, Clone, Copy, PartialEq)]
+enum Shown {
+    Bar,
+    Lines,
+    Nowhere,
+}
+
 /// Shows a run's status while it works.
 #[derive(Debug)]
 pub struct Progress {
-    bar: Option<ProgressBar>,
-    plain: bool,
+    how: Shown,
+    end: Option<f64>,
     start: Instant,
     begin: Option<f64>,
     shown: Option<Instant>,
 }
 
 impl Progress {
-    /// A bar if standard error is a terminal, plain lines if not, nothing if `quiet`.
-    pub fn new(quiet: bool) -> Self {
-        let terminal = io::stderr().is_terminal();
-        let bar = (terminal && !quiet).then(|| {
-            let bar = ProgressBar::with_draw_target(Some(PARTS), ProgressDrawTarget::stderr());
-            let style = ProgressStyle::with_template("{bar:24} {percent:>3} % {msg}");
-            style.into_iter().for_each(|style| bar.set_style(style));
-            bar
-        });
-        Self { bar, plain: !terminal && !quiet, start: Instant::now(), begin: None, shown: None }
+    /// A bar if standard error is a terminal, plain lines if not, nothing if `quiet`; the run ends at time `end` at the
+    /// latest.
+    pub fn new(quiet: bool, end: Option<f64>) -> Self {
+        let how = match (quiet, io::stderr().is_terminal()) {
+            (true, _) => Shown::Nowhere,
+            (false, true) => Shown::Bar,
+            (false, false) => Shown::Lines,
+        };
+        Self { how, end, start: Instant::now(), begin: None, shown: None }
     }
 
-    /// Shows the status, if it is time to.
-    pub fn show(&mut self, status: &Status) {
-        let pause = if self.bar.is_some() { BAR } else { PLAIN };
+    /// Shows where a run is, if it is time to.
+    pub fn show(&mut self, run: &dyn Run) {
+        self.show_status(&Status {
+            time: run.time(),
+            end: self.end,
+            step: run.steps(),
+            wet_cells: run.record().wet_cells,
+            fastest: run.stepper().speed(),
+            words: run.plane().model().words,
+        });
+    }
+
+    fn show_status(&mut self, status: &Status) {
+        let pause = if self.how == Shown::Bar { BAR } else { PLAIN };
         let begin = *self.begin.get_or_insert(status.share().unwrap_or(0.0));
         if self.shown.is_some_and(|shown| shown.elapsed() < pause) {
             return;
         }
         self.shown = Some(Instant::now());
         let line = status.line(begin, self.start.elapsed());
-        if let Some(bar) = &self.bar {
-            bar.set_position((status.share().unwrap_or(0.0) * PARTS as f64) as u64);
-            bar.set_message(line);
-        } else if self.plain {
-            // nobody is left to be told if standard error is closed
-            let _ = writeln!(io::stderr(), "{line}");
+        match self.how {
+            Shown::Bar => tell(&bar(status.share().unwrap_or(0.0), &line)),
+            Shown::Lines => tell(&format!("{line}\n")),
+            Shown::Nowhere => {}
         }
     }
 
     /// Takes the bar away; the lines that follow stand alone.
     pub fn finish(&self) {
-        self.bar.iter().for_each(ProgressBar::finish_and_clear);
+        if self.how == Shown::Bar && self.shown.is_some() {
+            tell(CLEAR);
+        }
     }
+}
+
+/// Begins the line of a terminal again, empty.
+const CLEAR: &str = "\r\x1b[2K";
+
+/// The line of a bar in place of the one before, cut at the terminal's edge: wrapping is off while it is written.
+fn bar(share: f64, line: &str) -> String {
+    let full = (share * WIDTH as f64) as usize;
+    let [full, empty] = ["█".repeat(full), "░".repeat(WIDTH - full)];
+    format!("{CLEAR}\x1b[?7l{full}{empty} {:>3.0} % {line}\x1b[?7h", 100.0 * share)
+}
+
+/// Writes on standard error at once; nobody is left to be told if it is closed.
+fn tell(text: &str) {
+    let mut out = io::stderr().lock();
+    let _ = out.write_all(text.as_bytes()).and_then(|()| out.flush());
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
 
+    const FLOW: Words = Words { wet: "wet cells", fastest: "speed" };
+    const SAND: Words = Words { wet: "cells with sand", fastest: "rolling layer at most" };
+
     #[test]
     fn the_line_says_where_the_run_is() {
-        let status = Status { time: 2.5, end: Some(10.0), step: 250, wet_cells: 40, most: 1.25, sand: false };
+        let status =
+            Status { time: 2.5, end: Some(10.0), step: 250, wet_cells: 40, fastest: 1.25, words: FLOW };
         let line = status.line(0.0, Duration::from_secs(30));
         assert_eq!(
             line,
@@ -134,7 +168,7 @@ mod tests {
             open.line(0.0, Duration::from_secs(30)),
             "time 2.5000, step 250, 40 wet cells, speed 1.250e0"
         );
-        let pile = Status { sand: true, ..open };
+        let pile = Status { words: SAND, ..open };
         assert_eq!(
             pile.line(0.0, Duration::from_secs(30)),
             "time 2.5000, step 250, 40 cells with sand, rolling layer at most 1.250e0"
@@ -143,6 +177,17 @@ mod tests {
         assert_eq!(resumed.map(|left| left.as_secs()), Some(150), "only the part of this session counts");
         let first = Status { time: 0.0, ..status };
         assert_eq!(first.left(0.0, Duration::from_secs(1)), None);
-        assert_eq!(words(Duration::from_secs(7265)), "2 h 01 min");
+        assert_eq!(duration(Duration::from_secs(7265)), "2 h 01 min");
+    }
+
+    #[test]
+    fn the_bar_fills_and_is_redrawn_in_place() {
+        let half = bar(0.5, "time 1");
+        assert!(
+            half.starts_with(CLEAR) && half.contains("████████████░░░░░░░░░░░░  50 % time 1"),
+            "{half:?}"
+        );
+        let full = bar(1.0, "");
+        assert!(full.contains(&"█".repeat(WIDTH)) && !full.contains('░') && !full.contains('\n'), "{full:?}");
     }
 }

@@ -3,14 +3,15 @@
 use std::num::NonZeroUsize;
 use std::path::{Path, PathBuf};
 
-use granflow::case::{Checked, Kind, RunPlan};
+use granflow::Checked;
 use granflow::output::summary::StopReason;
 use granflow::results::{FILM_SHARE, Finished};
-use granflow::run::{self, Options};
+use granflow::run::Run;
+use granflow::session::Options;
 
 use crate::failure::{Failure, print};
 use crate::interrupt;
-use crate::progress::{Progress, Status};
+use crate::progress::Progress;
 
 /// What the command line says about a run.
 #[derive(Debug, Clone, Default)]
@@ -27,9 +28,8 @@ pub struct RunOptions {
 
 impl RunOptions {
     /// The folder of the results: `--out`, else the case's name in the current folder.
-    pub fn directory(&self, case: &RunPlan) -> PathBuf {
-        let name =
-            || Path::new(case.source_name()).file_stem().map_or_else(|| "result".into(), PathBuf::from);
+    pub fn directory(&self, case: &str) -> PathBuf {
+        let name = || Path::new(case).file_stem().map_or_else(|| "result".into(), PathBuf::from);
         self.out.clone().unwrap_or_else(name)
     }
 }
@@ -57,19 +57,14 @@ fn line(finished: &Finished) -> String {
 /// Computes a case and writes its results, also those of a run that was interrupted.
 pub fn compute(case: Checked, options: &RunOptions) -> Result<Finished, Failure> {
     let stop = interrupt::listen()?;
-    let mut progress = Progress::new(options.quiet);
-    let (end, sand) = (case.run.ends.time, matches!(case.kind, Kind::Sandpile(_)));
+    let mut progress = Progress::new(options.quiet, case.plan().ends.time);
     let options = Options {
-        directory: options.directory(&case.run),
+        directory: options.directory(case.plan().source_name()),
         threads: options.threads.map_or(0, NonZeroUsize::get),
         resume: options.resume,
         command: std::env::args().collect::<Vec<_>>().join(" "),
     };
-    let mut report = |status: &run::Status| {
-        let run::Status { time, step, wet_cells, max_speed } = *status;
-        progress.show(&Status { time, end, step, wet_cells, most: max_speed, sand });
-    };
-    let finished = run::run(case, &options, stop, &mut report);
+    let finished = case.compute(&options, stop, &mut |run: &dyn Run| progress.show(run));
     progress.finish();
     let finished = finished?;
     let summary = &finished.summary;

@@ -1,11 +1,11 @@
 //! The sandpiles in `cases/`, computed by the program on coarse grids: what their comments promise comes out.
 
-use granflow::Disk;
-use granflow::case::Case;
+use granflow::Case;
 use granflow::output::frames::Frames;
 use granflow::output::ledger::Ledger;
 use granflow::output::summary::{StopReason, Summary};
-use granflow::run::{Options, Status};
+use granflow::run::Run;
+use granflow::session::Options;
 use std::path::Path;
 use std::process::{Command, Output};
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -220,12 +220,12 @@ fn a_source_that_goes_round_leaves_a_hill_with_a_bowl() {
 fn compute(case: &Case, directory: &Path, resume: bool, stop: Option<u64>) -> granflow::results::Finished {
     let options = Options { directory: directory.into(), threads: 1, resume, command: "test".into() };
     let interrupt = AtomicBool::new(false);
-    let mut report = |status: &Status| {
-        if Some(status.step) == stop {
+    let mut report = |run: &dyn Run| {
+        if Some(run.steps()) == stop {
             interrupt.store(true, Ordering::Relaxed);
         }
     };
-    granflow::run::run(case.check(&Disk).unwrap(), &options, &interrupt, &mut report).unwrap()
+    case.check().unwrap().compute(&options, &interrupt, &mut report).unwrap()
 }
 
 #[test]

@@ -2,10 +2,10 @@
 
 use crate::field::Field;
 use crate::grid::{GHOSTS, Grid, Layout};
-use granflow_model::scheme::{Boundary, Parts};
+use granflow_model::scheme::{Boundary, Components};
 
 /// Fill the ghost cells of `field`, which was made of zeros; `mirror(axis, value)` is the image across a wall.
-pub fn fill<const D: usize, P: Parts<f64>>(
+pub fn fill<const D: usize, P: Components<f64>>(
     field: &mut Field,
     grid: &Grid<D>,
     layout: &Layout,
@@ -20,13 +20,13 @@ pub fn fill<const D: usize, P: Parts<f64>>(
         let place = |i: isize, j: isize| if axis == 0 { layout.place(i, j) } else { layout.place(j, i) };
         for ghost in 0..ghosts {
             for (side, target) in [(0, -1 - ghost), (1, last + 1 + ghost)] {
-                if grid.boundary[axis][side] == Boundary::Nothing {
+                if grid.boundary[axis][side] == Boundary::Absorbing {
                     continue; // 0, as the field was made
                 }
                 let edge = if side == 0 { 0 } else { last };
                 let inward = if side == 0 { edge + ghost } else { edge - ghost };
                 let source = match grid.boundary[axis][side] {
-                    Boundary::Open | Boundary::Nothing => edge,
+                    Boundary::Open | Boundary::Absorbing => edge,
                     Boundary::Wall => inward,
                     Boundary::Periodic => last - inward, // -1 - k is last - k, last + 1 + k is k
                 };
@@ -34,7 +34,7 @@ pub fn fill<const D: usize, P: Parts<f64>>(
                     let value: P = field.get(place(source, j));
                     let value = match grid.boundary[axis][side] {
                         Boundary::Wall => mirror(axis, value),
-                        Boundary::Open | Boundary::Periodic | Boundary::Nothing => value,
+                        Boundary::Open | Boundary::Periodic | Boundary::Absorbing => value,
                     };
                     field.set(place(target, j), value);
                 }

@@ -1,88 +1,115 @@
 //! Cell values as struct of arrays.
 
-use crate::backend::Sheet;
+use crate::disjoint::DisjointSlice;
 use crate::grid::Layout;
-use granflow_model::scheme::Parts;
+use granflow_model::scheme::Components;
 use rayon::prelude::*;
 use std::marker::PhantomData;
 
-/// One padded array per number of a cell value.
+/// The most components that a value of a cell may have: a state, a ground. (Face states and fluxes may have any number.)
+pub const MAX_COMPONENTS: usize = 16;
+
+/// One padded array for each component of a value of a cell.
 #[derive(Debug, Default)]
 pub struct Field {
-    /// The arrays of the parts in double precision, each [`Layout::len`] long, or 1 where a part is the same in all cells; empty
-    /// where a part is kept in single precision.
-    pub parts: Vec<Vec<f64>>,
-    /// Those of the others; empty where a part is kept in double precision.
+    /// The components in double precision, each [`Layout::len`] numbers long, or 1 where a component is the same in all cells;
+    /// empty where one is kept in single precision.
+    doubles: Vec<Vec<f64>>,
+    /// Those in single precision; empty where a component is kept in double precision.
     singles: Vec<Vec<f32>>,
 }
 
-/// Is a part one of those whose bits are set?
+/// Is a component one of those whose bits are set?
 #[inline(always)]
-pub(crate) const fn has(parts: u32, k: usize) -> bool {
-    parts >> k & 1 == 1
+pub(crate) const fn has(mask: u32, k: usize) -> bool {
+    mask >> k & 1 == 1
 }
 
 /// Bytes that a grid keeps of a value in each cell.
-pub(crate) const fn bytes_per_cell<P: Parts<f64>>() -> usize {
-    let (singles, shared) = (P::SINGLE.count_ones() as usize, P::SHARED.count_ones() as usize);
+pub(crate) const fn bytes_per_cell<P: Components<f64>>() -> usize {
+    let (singles, shared) = (P::F32_MASK.count_ones() as usize, P::UNIFORM_MASK.count_ones() as usize);
     (P::COUNT - shared - singles) * size_of::<f64>() + singles * size_of::<f32>()
 }
 
 impl Field {
     /// Zeros for values of type `P`.
-    pub fn zeros<P: Parts<f64>>(layout: &Layout) -> Field {
-        const { assert!(P::COUNT <= MOST && P::SINGLE & P::SHARED == 0) };
-        let length = |k: usize| if has(P::SHARED, k) { 1 } else { layout.len() };
-        let double = |k: usize| zeros(if has(P::SINGLE, k) { 0 } else { length(k) });
-        let single = |k: usize| zeros(if has(P::SINGLE, k) { length(k) } else { 0 });
-        Field { parts: (0..P::COUNT).map(double).collect(), singles: (0..P::COUNT).map(single).collect() }
+    pub fn zeros<P: Components<f64>>(layout: &Layout) -> Field {
+        const {
+            assert!(
+                P::COUNT <= MAX_COMPONENTS,
+                "too many components: raise MAX_COMPONENTS in granflow-engine/src/field.rs"
+            );
+            assert!(P::F32_MASK & P::UNIFORM_MASK == 0, "a uniform component is kept in double precision");
+            assert!((P::F32_MASK | P::UNIFORM_MASK) >> P::COUNT == 0, "a mask has bits of no component");
+        };
+        let double = |k: usize| zeros(Self::lengths::<P>(layout, k)[0]);
+        let single = |k: usize| zeros(Self::lengths::<P>(layout, k)[1]);
+        Field { doubles: (0..P::COUNT).map(double).collect(), singles: (0..P::COUNT).map(single).collect() }
     }
-    /// A field of numbers in double precision that were taken from another.
-    pub fn of(parts: Vec<Vec<f64>>) -> Field {
-        Field { singles: vec![Vec::new(); parts.len()], parts }
+    /// How many numbers component `k` has in double and in single precision.
+    fn lengths<P: Components<f64>>(layout: &Layout, k: usize) -> [usize; 2] {
+        let length = if has(P::UNIFORM_MASK, k) { 1 } else { layout.len() };
+        if has(P::F32_MASK, k) { [0, length] } else { [length, 0] }
     }
-    /// The value of every cell, without the ghosts, by its column and row; parts that are the same in all cells are those of the
-    /// first.
-    pub(crate) fn fill<P: Parts<f64>>(&mut self, layout: &Layout, value: impl Fn(usize, usize) -> P + Sync) {
-        if P::SHARED != 0 {
-            value(0, 0).scatter(|k, part| {
-                if has(P::SHARED, k) {
-                    self.parts[k][0] = part;
+    /// A field of components in double precision that were taken from another.
+    pub fn of(components: Vec<Vec<f64>>) -> Field {
+        Field { singles: vec![Vec::new(); components.len()], doubles: components }
+    }
+    /// The components in double precision, padded; empty where one is kept in single precision.
+    pub fn components(&self) -> &[Vec<f64>] {
+        &self.doubles
+    }
+    /// The arrays of the components in double precision.
+    pub(crate) fn arrays_mut(&mut self) -> impl Iterator<Item = &mut [f64]> {
+        self.doubles.iter_mut().map(Vec::as_mut_slice)
+    }
+    /// The value of every cell, without the ghosts, by its column and row; components that are the same in all cells are
+    /// taken from the first.
+    pub(crate) fn fill<P: Components<f64>>(
+        &mut self,
+        layout: &Layout,
+        value: impl Fn(usize, usize) -> P + Sync,
+    ) {
+        if P::UNIFORM_MASK != 0 {
+            value(0, 0).store(|k, part| {
+                if has(P::UNIFORM_MASK, k) {
+                    self.doubles[k][0] = part;
                 }
             });
         }
-        let parts: Vec<Sheet> = self.parts.iter_mut().map(|part| Sheet::new(part)).collect();
-        let singles: Vec<Sheet<f32>> = self.singles.iter_mut().map(|part| Sheet::new(part)).collect();
+        let doubles: Vec<DisjointSlice> =
+            self.doubles.iter_mut().map(|part| DisjointSlice::new(part)).collect();
+        let singles: Vec<DisjointSlice<f32>> =
+            self.singles.iter_mut().map(|part| DisjointSlice::new(part)).collect();
         (0..layout.rows).into_par_iter().for_each(|row| {
             for column in 0..layout.columns {
                 let place = layout.place(column as isize, row as isize);
-                value(column, row).scatter(|k, part| {
+                value(column, row).store(|k, part| {
                     // SAFETY: a row belongs to one thread.
                     unsafe {
-                        if has(P::SINGLE, k) {
+                        if has(P::F32_MASK, k) {
                             singles[k].slice(place..place + 1)[0] = part as f32;
-                        } else if !has(P::SHARED, k) {
-                            parts[k].slice(place..place + 1)[0] = part;
+                        } else if !has(P::UNIFORM_MASK, k) {
+                            doubles[k].slice(place..place + 1)[0] = part;
                         }
                     }
                 });
             }
         });
     }
-    /// Is it one for values of type `P` in double precision, of every place?
-    pub(crate) fn holds<P: Parts<f64>>(&self, layout: &Layout) -> bool {
-        P::SINGLE | P::SHARED == 0
-            && self.parts.len() == P::COUNT
-            && self.parts.iter().all(|part| part.len() == layout.len())
+    /// Does it hold values of type `P` in every place of the layout?
+    pub(crate) fn holds<P: Components<f64>>(&self, layout: &Layout) -> bool {
+        let fits = |k: usize| [self.doubles[k].len(), self.singles[k].len()] == Self::lengths::<P>(layout, k);
+        [self.doubles.len(), self.singles.len()] == [P::COUNT; 2] && (0..P::COUNT).all(fits)
     }
     /// The value at `place`.
     #[inline(always)]
-    pub fn get<P: Parts<f64>>(&self, place: usize) -> P {
-        P::gather(|k| {
-            if has(P::SINGLE, k) {
+    pub fn get<P: Components<f64>>(&self, place: usize) -> P {
+        P::load(|k| {
+            if has(P::F32_MASK, k) {
                 f64::from(self.singles[k][place])
             } else {
-                self.parts[k][if has(P::SHARED, k) { 0 } else { place }]
+                self.doubles[k][if has(P::UNIFORM_MASK, k) { 0 } else { place }]
             }
         })
     }
@@ -90,28 +117,28 @@ impl Field {
     ///
     /// # Panics
     /// If they reach beyond the arrays.
-    pub fn row<P: Parts<f64>>(&self, start: usize, len: usize) -> Row<'_, P> {
+    pub fn row<P: Components<f64>>(&self, start: usize, len: usize) -> Row<'_, P> {
         for k in 0..P::COUNT {
-            let there = if has(P::SINGLE, k) { self.singles[k].len() } else { self.parts[k].len() };
-            let wanted = if has(P::SHARED, k) { 1 } else { start + len };
-            assert!(wanted <= there, "cells beyond their field");
+            let there = if has(P::F32_MASK, k) { self.singles[k].len() } else { self.doubles[k].len() };
+            let end = if has(P::UNIFORM_MASK, k) { Some(1) } else { start.checked_add(len) };
+            assert!(end.is_some_and(|end| end <= there), "cells beyond their field");
         }
         Row { starts: self.starts::<P>(), start, len, owner: PhantomData }
     }
     /// Set the value at `place`, but for the parts that are the same in all cells.
     #[inline(always)]
-    pub fn set<P: Parts<f64>>(&mut self, place: usize, value: P) {
-        value.scatter(|k, part| {
-            if has(P::SINGLE, k) {
+    pub fn set<P: Components<f64>>(&mut self, place: usize, value: P) {
+        value.store(|k, part| {
+            if has(P::F32_MASK, k) {
                 self.singles[k][place] = part as f32;
-            } else if !has(P::SHARED, k) {
-                self.parts[k][place] = part;
+            } else if !has(P::UNIFORM_MASK, k) {
+                self.doubles[k][place] = part;
             }
         });
     }
     /// Are the values at some places the same bit for bit? Places come as the first ones of rows of `width`.
-    pub(crate) fn is_even(&self, starts: impl Iterator<Item = usize> + Clone, width: usize) -> bool {
-        fn even<T: Copy, B: PartialEq>(
+    pub(crate) fn is_uniform(&self, starts: impl Iterator<Item = usize> + Clone, width: usize) -> bool {
+        fn uniform<T: Copy, B: PartialEq>(
             part: &[T],
             bits: impl Fn(T) -> B,
             mut starts: impl Iterator<Item = usize> + Clone,
@@ -121,14 +148,14 @@ impl Field {
             let first = bits(part[first]);
             starts.all(|start| part[start..start + width].iter().all(|value| bits(*value) == first))
         }
-        self.parts.iter().all(|part| even(part, f64::to_bits, starts.clone(), width))
-            && self.singles.iter().all(|part| even(part, f32::to_bits, starts.clone(), width))
+        self.doubles.iter().all(|part| uniform(part, f64::to_bits, starts.clone(), width))
+            && self.singles.iter().all(|part| uniform(part, f32::to_bits, starts.clone(), width))
     }
     /// Where the arrays begin, to be read with the precision of `P`.
-    pub(crate) fn starts<P: Parts<f64>>(&self) -> [*const u8; MOST] {
+    pub(crate) fn starts<P: Components<f64>>(&self) -> [*const u8; MAX_COMPONENTS] {
         std::array::from_fn(|k| {
-            let double = || self.parts.get(k).map_or(std::ptr::null(), |part| part.as_ptr().cast());
-            if has(P::SINGLE, k) { self.singles[k].as_ptr().cast() } else { double() }
+            let double = || self.doubles.get(k).map_or(std::ptr::null(), |part| part.as_ptr().cast());
+            if has(P::F32_MASK, k) { self.singles[k].as_ptr().cast() } else { double() }
         })
     }
 }
@@ -136,7 +163,7 @@ impl Field {
 impl Clone for Field {
     fn clone(&self) -> Self {
         Field {
-            parts: self.parts.iter().map(|part| copy(part)).collect(),
+            doubles: self.doubles.iter().map(|part| copy(part)).collect(),
             singles: self.singles.iter().map(|part| copy(part)).collect(),
         }
     }
@@ -157,7 +184,7 @@ pub(crate) fn zeros<T: Copy + Default>(len: usize) -> Vec<T> {
         const PAGE: usize = 4096;
         let (start, bytes) = (numbers.as_ptr() as usize, size_of_val(numbers.as_slice()));
         let first = start.next_multiple_of(PAGE);
-        // SAFETY: an advice on pages that are wholly ours; refused, it changes nothing.
+        // SAFETY: an advice on pages that belong wholly to the array; refused, it changes nothing.
         unsafe {
             libc::madvise(first as *mut _, (start + bytes).saturating_sub(first), libc::MADV_HUGEPAGE);
         }
@@ -165,26 +192,26 @@ pub(crate) fn zeros<T: Copy + Default>(len: usize) -> Vec<T> {
     numbers
 }
 
-/// Most numbers that a cell value has.
-pub(crate) const MOST: usize = 16;
-
 /// Neighbouring places of a field, opened for reading.
 #[derive(Clone, Copy)]
 pub struct Row<'a, P> {
-    starts: [*const u8; MOST],
+    starts: [*const u8; MAX_COMPONENTS],
     start: usize,
     len: usize,
     owner: PhantomData<(&'a Field, P)>,
 }
 
-impl<P: Parts<f64>> Row<'_, P> {
+impl<P: Components<f64>> Row<'_, P> {
     /// The value `i` places behind the first.
     #[inline(always)]
     pub fn get(&self, i: usize) -> P {
         assert!(i < self.len, "a cell beyond its row");
         let place = self.start + i;
-        // SAFETY: `Field::row` found the places in all arrays.
-        P::gather(|k| unsafe { read::<P>(self.starts[k], k, place) })
+        P::load(|k| {
+            assert!(k < P::COUNT);
+            // SAFETY: `Field::row` found the places in all arrays.
+            unsafe { read::<P>(self.starts[k], k, place) }
+        })
     }
 }
 
@@ -193,13 +220,13 @@ impl<P: Parts<f64>> Row<'_, P> {
 /// # Safety
 /// The array holds the part of a `P`, and has the place.
 #[inline(always)]
-unsafe fn read<P: Parts<f64>>(start: *const u8, k: usize, place: usize) -> f64 {
+unsafe fn read<P: Components<f64>>(start: *const u8, k: usize, place: usize) -> f64 {
     // SAFETY: as the caller promises.
     unsafe {
-        if has(P::SINGLE, k) {
+        if has(P::F32_MASK, k) {
             f64::from(*start.cast::<f32>().add(place))
         } else {
-            *start.cast::<f64>().add(if has(P::SHARED, k) { 0 } else { place })
+            *start.cast::<f64>().add(if has(P::UNIFORM_MASK, k) { 0 } else { place })
         }
     }
 }

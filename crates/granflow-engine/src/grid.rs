@@ -43,7 +43,7 @@ impl<const D: usize> Grid<D> {
 pub const GHOSTS: usize = 1 + granflow_model::scheme::REACH;
 
 /// Numbers behind the last row, so that a vector can be read from every place.
-pub(crate) const ROOM: usize = 2 * crate::lanes::MOST_LANES;
+pub(crate) const PADDING: usize = 2 * crate::lanes::MAX_LANES;
 
 /// Rows of the padded arrays: x fastest, ghosts included; one row in one dimension.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -71,7 +71,7 @@ impl Layout {
     }
     /// Numbers in one padded array.
     pub fn len(&self) -> usize {
-        self.stride * (self.rows + 2 * self.margin) + ROOM
+        self.stride * (self.rows + 2 * self.margin) + PADDING
     }
     /// A layout always holds a cell.
     pub fn is_empty(&self) -> bool {
@@ -104,5 +104,21 @@ impl Layout {
     #[inline(always)]
     pub fn step(&self, axis: usize) -> usize {
         if axis == 0 { 1 } else { self.stride }
+    }
+}
+
+impl Grid<1> {
+    /// An interval cut into equal cells, open at both ends.
+    pub fn line([from, to]: [f64; 2], cells: usize) -> Grid<1> {
+        let size = [(to - from) / cells as f64];
+        Grid { cells: [cells], origin: [from], size, boundary: [[Boundary::Open; 2]] }
+    }
+}
+
+impl Grid<2> {
+    /// A rectangle \[from, to\] along x and y cut into equal cells, open on all sides.
+    pub fn rectangle(x: [f64; 2], y: [f64; 2], cells: [usize; 2]) -> Grid<2> {
+        let size = [(x[1] - x[0]) / cells[0] as f64, (y[1] - y[0]) / cells[1] as f64];
+        Grid { cells, origin: [x[0], y[0]], size, boundary: [[Boundary::Open; 2]; 2] }
     }
 }

@@ -1,8 +1,6 @@
 //! The schemes that a simulation can step: their inner loops are compiled here, once, and called from elsewhere.
 
-use crate::backend::{Sweep, Tally};
-use crate::field::Field;
-use crate::observe::Maps;
+use crate::sweep::{Output, Sweep};
 use granflow_model::hadeler_kuttler::scheme::HadelerKuttler;
 use granflow_model::savage_hutter::balanced::Balanced;
 use granflow_model::savage_hutter::friction::Law;
@@ -14,7 +12,7 @@ use granflow_model::scheme::Scheme;
 pub trait Kernel<const D: usize>: Scheme<D, f64> {
     /// Compute one stage in the tiles that are awake.
     #[doc(hidden)]
-    fn sweep(&self, sweep: &Sweep, to: &mut Field, maps: Option<&mut Maps>, tallies: &mut [Tally]);
+    fn sweep(&self, sweep: &Sweep, output: Output);
 }
 
 /// Scheme in D dimensions; in one; in two; how to make these of it. What does the work is generic in nothing: else every crate
@@ -22,16 +20,16 @@ pub trait Kernel<const D: usize>: Scheme<D, f64> {
 macro_rules! kernels {
     ($($scheme:ty, $line:ty, $plane:ty, $made:ident;)*) => {$(
         impl<const D: usize> Kernel<D> for $scheme {
-            fn sweep(&self, sweep: &Sweep, to: &mut Field, maps: Option<&mut Maps>, tallies: &mut [Tally]) {
-                fn line(scheme: $line, sweep: &Sweep, to: &mut Field, maps: Option<&mut Maps>, found: &mut [Tally]) {
-                    sweep.run::<1, _>(&scheme, to, maps, found);
+            fn sweep(&self, sweep: &Sweep, output: Output) {
+                fn line(scheme: $line, sweep: &Sweep, output: Output) {
+                    sweep.run::<1, _>(&scheme, output);
                 }
-                fn plane(scheme: $plane, sweep: &Sweep, to: &mut Field, maps: Option<&mut Maps>, found: &mut [Tally]) {
-                    sweep.run::<2, _>(&scheme, to, maps, found);
+                fn plane(scheme: $plane, sweep: &Sweep, output: Output) {
+                    sweep.run::<2, _>(&scheme, output);
                 }
                 match D {
-                    1 => line(self.$made(), sweep, to, maps, tallies),
-                    2 => plane(self.$made(), sweep, to, maps, tallies),
+                    1 => line(self.$made(), sweep, output),
+                    2 => plane(self.$made(), sweep, output),
                     _ => unreachable!("a grid has one dimension or two"),
                 }
             }

@@ -15,10 +15,10 @@ use std::fmt::{Debug, Formatter, Result};
 use std::ops::{Add, BitAnd, BitOr, Div, Mul, Neg, Not, Sub};
 
 /// Most numbers side by side.
-pub(crate) const MOST_LANES: usize = 16;
+pub(crate) const MAX_LANES: usize = 16;
 
 /// A number, or several, that lie side by side in memory.
-pub(crate) trait Wide: Real {
+pub(crate) trait SimdVector: Real {
     /// How many.
     const WIDTH: usize;
     /// Read them.
@@ -41,7 +41,7 @@ pub(crate) trait Wide: Real {
             // SAFETY: as the caller promises.
             return unsafe { Self::load(from) };
         }
-        let mut numbers = [0.0; MOST_LANES];
+        let mut numbers = [0.0; MAX_LANES];
         for k in 0..Self::WIDTH {
             if Self::holds(mask, k) {
                 // SAFETY: as the caller promises.
@@ -61,7 +61,7 @@ pub(crate) trait Wide: Real {
             // SAFETY: as the caller promises.
             return unsafe { self.store(to) };
         }
-        let mut numbers = [0.0; MOST_LANES];
+        let mut numbers = [0.0; MAX_LANES];
         // SAFETY: there are no more lanes.
         unsafe { self.store(numbers.as_mut_ptr()) };
         for k in 0..Self::WIDTH {
@@ -74,10 +74,10 @@ pub(crate) trait Wide: Real {
     /// Read numbers of single precision.
     ///
     /// # Safety
-    /// As [`Wide::load`].
+    /// As [`SimdVector::load`].
     #[inline(always)]
     unsafe fn load_single(from: *const f32) -> Self {
-        let mut numbers = [0.0; MOST_LANES];
+        let mut numbers = [0.0; MAX_LANES];
         for k in 0..Self::WIDTH {
             // SAFETY: as the caller promises.
             numbers[k] = f64::from(unsafe { *from.add(k) });
@@ -88,14 +88,14 @@ pub(crate) trait Wide: Real {
     /// Read those of `mask`, 0 elsewhere.
     ///
     /// # Safety
-    /// As [`Wide::load_where`].
+    /// As [`SimdVector::load_where`].
     #[inline(always)]
     unsafe fn load_single_where(mask: Self::Mask, from: *const f32) -> Self {
         if Self::all(mask) {
             // SAFETY: as the caller promises.
             return unsafe { Self::load_single(from) };
         }
-        let mut numbers = [0.0; MOST_LANES];
+        let mut numbers = [0.0; MAX_LANES];
         for k in 0..Self::WIDTH {
             if Self::holds(mask, k) {
                 // SAFETY: as the caller promises.
@@ -108,10 +108,10 @@ pub(crate) trait Wide: Real {
     /// Write those of `mask`, rounded to single precision.
     ///
     /// # Safety
-    /// As [`Wide::store_where`].
+    /// As [`SimdVector::store_where`].
     #[inline(always)]
     unsafe fn store_single_where(self, mask: Self::Mask, to: *mut f32) {
-        let mut numbers = [0.0; MOST_LANES];
+        let mut numbers = [0.0; MAX_LANES];
         // SAFETY: there are no more lanes.
         unsafe { self.store(numbers.as_mut_ptr()) };
         if Self::all(mask) {
@@ -140,7 +140,7 @@ pub(crate) trait Wide: Real {
     fn bits(mask: Self::Mask) -> u64;
 }
 
-impl Wide for f64 {
+impl SimdVector for f64 {
     const WIDTH: usize = 1;
     #[inline(always)]
     unsafe fn load(from: *const f64) -> f64 {
@@ -176,7 +176,7 @@ impl Wide for f64 {
 
 /// Ask for a number that will be read or written soon.
 #[inline(always)]
-pub(crate) fn expect(place: *const u8) {
+pub(crate) fn prefetch(place: *const u8) {
     #[cfg(target_arch = "x86_64")]
     // SAFETY: a prefetch may be given any address.
     unsafe {
@@ -186,35 +186,35 @@ pub(crate) fn expect(place: *const u8) {
     let _ = place;
 }
 
-/// The instructions that a step is computed with; the results are the same bit for bit.
+/// The simd that a step is computed with; the results are the same bit for bit.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Instructions {
+pub enum SimdLevel {
     /// One cell at a time.
     Scalar,
     /// The widest vectors of this processor: AVX-512, AVX2 or NEON; one cell at a time where it has none of them.
-    Widest,
-    /// As `Widest`, but no wider than AVX2.
-    Narrow,
+    Best,
+    /// As `Best`, but no wider than AVX2.
+    Avx2,
 }
 
 /// Work that any kind of lanes can do.
-pub(crate) trait Job {
+pub(crate) trait SimdKernel {
     /// What it gives.
     type Output;
-    /// Do it; `run` calls a function where the instructions of `L` are allowed.
-    fn run<L: Wide>(self, inside: impl Inside) -> Self::Output;
+    /// Do it; `run` calls a function where the simd of `L` are allowed.
+    fn run<L: SimdVector>(self, inside: impl SimdContext) -> Self::Output;
 }
 
-/// Where the instructions of some lanes are allowed.
-pub(crate) trait Inside: Copy + Send + Sync {
+/// Where the simd of some lanes are allowed.
+pub(crate) trait SimdContext: Copy + Send + Sync {
     /// Call `work` there.
     fn call<T>(self, work: impl FnOnce() -> T) -> T;
 }
 
 #[derive(Clone, Copy)]
-struct Anywhere;
+struct ScalarContext;
 
-impl Inside for Anywhere {
+impl SimdContext for ScalarContext {
     #[inline(always)]
     fn call<T>(self, work: impl FnOnce() -> T) -> T {
         work()
@@ -222,30 +222,30 @@ impl Inside for Anywhere {
 }
 
 #[derive(Clone, Copy)]
-struct With<S>(S);
+struct VectorContext<S>(S);
 
-impl<S: Simd> Inside for With<S> {
+impl<S: Simd> SimdContext for VectorContext<S> {
     #[inline(always)]
     fn call<T>(self, work: impl FnOnce() -> T) -> T {
         self.0.vectorize(work)
     }
 }
 
-impl Instructions {
+impl SimdLevel {
     /// Let `job` use them.
-    pub(crate) fn run<J: Job>(self, job: J) -> J::Output {
+    pub(crate) fn run<J: SimdKernel>(self, job: J) -> J::Output {
         match (self, Level::new()) {
             #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
-            (Instructions::Widest, Level::Avx512(simd)) => job.run::<Lanes<Avx512>>(With(simd)),
+            (SimdLevel::Best, Level::Avx512(simd)) => job.run::<Lanes<Avx512>>(VectorContext(simd)),
             #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
-            (Instructions::Widest | Instructions::Narrow, level) if level.as_avx2().is_some() => {
-                job.run::<Pair<Lanes<Avx2>>>(With(level.as_avx2().expect("just seen")))
+            (SimdLevel::Best | SimdLevel::Avx2, level) if level.as_avx2().is_some() => {
+                job.run::<Pair<Lanes<Avx2>>>(VectorContext(level.as_avx2().expect("just seen")))
             }
             #[cfg(target_arch = "aarch64")]
-            (Instructions::Widest | Instructions::Narrow, Level::Neon(simd)) => {
-                job.run::<Pair<Lanes<Neon>>>(With(simd))
+            (SimdLevel::Best | SimdLevel::Avx2, Level::Neon(simd)) => {
+                job.run::<Pair<Lanes<Neon>>>(VectorContext(simd))
             }
-            _ => job.run::<f64>(Anywhere),
+            _ => job.run::<f64>(ScalarContext),
         }
     }
 
@@ -253,13 +253,13 @@ impl Instructions {
     pub fn found(self) -> &'static str {
         match (self, Level::new()) {
             #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
-            (Instructions::Widest, Level::Avx512(_)) => "AVX-512, vectors of 8 cells",
+            (SimdLevel::Best, Level::Avx512(_)) => "AVX-512, vectors of 8 cells",
             #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
-            (Instructions::Widest | Instructions::Narrow, level) if level.as_avx2().is_some() => {
+            (SimdLevel::Best | SimdLevel::Avx2, level) if level.as_avx2().is_some() => {
                 "AVX2, two vectors of 4 cells"
             }
             #[cfg(target_arch = "aarch64")]
-            (Instructions::Widest | Instructions::Narrow, Level::Neon(_)) => "NEON, two vectors of 2 cells",
+            (SimdLevel::Best | SimdLevel::Avx2, Level::Neon(_)) => "NEON, two vectors of 2 cells",
             _ => "scalar, one cell at a time",
         }
     }
@@ -270,11 +270,11 @@ impl Instructions {
 pub(crate) struct Lanes<S: Simd>(S::f64s);
 
 impl<S: Simd> Lanes<S> {
-    /// The proof that the processor has these instructions; lanes are made only where [`Instructions::run`] found one.
+    /// The proof that the processor has these simd; lanes are made only where [`SimdLevel::run`] found one.
     #[inline(always)]
     fn proof() -> S {
         const { assert!(size_of::<S>() == 0) };
-        // SAFETY: a proof holds nothing, and `Instructions::run` had one.
+        // SAFETY: a proof holds nothing, and `SimdLevel::run` had one.
         unsafe { std::mem::zeroed() }
     }
     #[inline(always)]
@@ -292,32 +292,32 @@ impl<S: Simd> Debug for Lanes<S> {
 
 /// Lanes in which something holds.
 #[derive(Clone, Copy)]
-pub(crate) struct Where<S: Simd>(S::mask64s);
+pub(crate) struct LaneMask<S: Simd>(S::mask64s);
 
-impl<S: Simd> Debug for Where<S> {
+impl<S: Simd> Debug for LaneMask<S> {
     fn fmt(&self, f: &mut Formatter<'_>) -> Result {
         write!(f, "{:b}", self.0.to_bitmask())
     }
 }
-impl<S: Simd> BitAnd for Where<S> {
+impl<S: Simd> BitAnd for LaneMask<S> {
     type Output = Self;
     #[inline(always)]
     fn bitand(self, other: Self) -> Self {
-        Where(self.0 & other.0)
+        LaneMask(self.0 & other.0)
     }
 }
-impl<S: Simd> BitOr for Where<S> {
+impl<S: Simd> BitOr for LaneMask<S> {
     type Output = Self;
     #[inline(always)]
     fn bitor(self, other: Self) -> Self {
-        Where(self.0 | other.0)
+        LaneMask(self.0 | other.0)
     }
 }
-impl<S: Simd> Not for Where<S> {
+impl<S: Simd> Not for LaneMask<S> {
     type Output = Self;
     #[inline(always)]
     fn not(self) -> Self {
-        Where(!self.0)
+        LaneMask(!self.0)
     }
 }
 impl<S: Simd> Add for Lanes<S> {
@@ -357,29 +357,29 @@ impl<S: Simd> Neg for Lanes<S> {
 }
 
 impl<S: Simd> Real for Lanes<S> {
-    type Mask = Where<S>;
+    type Mask = LaneMask<S>;
     #[inline(always)]
-    fn of(value: f64) -> Self {
+    fn splat(value: f64) -> Self {
         Lanes(S::f64s::splat(Self::proof(), value))
     }
     #[inline(always)]
-    fn lt(self, other: Self) -> Where<S> {
-        Where(self.0.simd_lt(other.0))
+    fn lt(self, other: Self) -> LaneMask<S> {
+        LaneMask(self.0.simd_lt(other.0))
     }
     #[inline(always)]
-    fn le(self, other: Self) -> Where<S> {
-        Where(self.0.simd_le(other.0))
+    fn le(self, other: Self) -> LaneMask<S> {
+        LaneMask(self.0.simd_le(other.0))
     }
     #[inline(always)]
-    fn same(self, other: Self) -> Where<S> {
-        Where(self.0.simd_eq(other.0))
+    fn equals(self, other: Self) -> LaneMask<S> {
+        LaneMask(self.0.simd_eq(other.0))
     }
     #[inline(always)]
-    fn select(mask: Where<S>, yes: Self, no: Self) -> Self {
+    fn select(mask: LaneMask<S>, yes: Self, no: Self) -> Self {
         Lanes(mask.0.select(yes.0, no.0))
     }
     #[inline(always)]
-    fn any(mask: Where<S>) -> bool {
+    fn any(mask: LaneMask<S>) -> bool {
         mask.0.any_true()
     }
     #[inline(always)]
@@ -412,7 +412,7 @@ impl<S: Simd> Real for Lanes<S> {
     }
 }
 
-impl<S: Simd> Wide for Lanes<S> {
+impl<S: Simd> SimdVector for Lanes<S> {
     const WIDTH: usize = <S::f64s as SimdBase<S>>::LEN;
     #[inline(always)]
     unsafe fn load(from: *const f64) -> Self {
@@ -430,19 +430,19 @@ impl<S: Simd> Wide for Lanes<S> {
         self.0.as_slice()[0]
     }
     #[inline(always)]
-    fn holds(mask: Where<S>, k: usize) -> bool {
+    fn holds(mask: LaneMask<S>, k: usize) -> bool {
         mask.0.test(k)
     }
     #[inline(always)]
-    fn from_bits(bits: u64) -> Where<S> {
-        Where(S::mask64s::from_bitmask(Self::proof(), bits & ((1 << Self::WIDTH) - 1)))
+    fn from_bits(bits: u64) -> LaneMask<S> {
+        LaneMask(S::mask64s::from_bitmask(Self::proof(), bits & ((1 << Self::WIDTH) - 1)))
     }
     #[inline(always)]
-    fn all(mask: Where<S>) -> bool {
+    fn all(mask: LaneMask<S>) -> bool {
         mask.0.all_true()
     }
     #[inline(always)]
-    fn bits(mask: Where<S>) -> u64 {
+    fn bits(mask: LaneMask<S>) -> u64 {
         mask.0.to_bitmask()
     }
 }

@@ -1,9 +1,9 @@
 //! Values on a rectangular lattice, read between its points.
 
-use rayon::prelude::*;
 use tiny_skia::{Pixmap, PremultipliedColorU8};
 
 use super::colours::Rgb;
+use super::rows;
 
 /// Rows of `nx` values, row 0 first.
 #[derive(Debug, Clone, Copy)]
@@ -62,7 +62,7 @@ pub(super) fn paint(
     colour: impl Fn(usize, usize) -> Option<Rgb> + Sync,
 ) -> Option<Pixmap> {
     let mut image = Pixmap::new(u32::try_from(width).ok()?, u32::try_from(height).ok()?)?;
-    image.pixels_mut().par_chunks_mut(width).enumerate().for_each(|(row, pixels)| {
+    rows::each(image.pixels_mut(), width, |row, pixels| {
         for (column, pixel) in pixels.iter_mut().enumerate() {
             if let Some([r, g, b]) = colour(column, row) {
                 *pixel = PremultipliedColorU8::from_rgba(r, g, b, 255).unwrap_or(*pixel);

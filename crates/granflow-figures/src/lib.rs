@@ -34,6 +34,7 @@ mod legend;
 mod map;
 mod perspective;
 mod relief;
+mod rows;
 mod scale_bar;
 mod section;
 mod surface;

@@ -1,12 +1,11 @@
 //! The mountain under a map: light and shadow, and contour lines.
 
-use rayon::prelude::*;
-
 use super::axes::extent;
 use super::colours::{Rgb, whole};
 use super::contours::{Contours, Elevations};
 use super::lattice::{Between, Lattice};
 use super::map::Map;
+use super::rows;
 use super::view::View;
 
 /// The mountain at every pixel of a map, without what happened on it: maps that show the same box have it in common.
@@ -39,8 +38,9 @@ impl Relief {
         let at_pixels = |values: &[f64]| {
             let lattice = Lattice { values, nx: e.nx };
             let mut pixels = vec![f64::NAN; columns * rows];
-            pixels.par_chunks_mut(columns).zip(&up).for_each(|(line, &up)| {
-                line.iter_mut().zip(&across).for_each(|(pixel, &across)| *pixel = lattice.at(across, up));
+            rows::each(&mut pixels, columns, |row, line| {
+                let along = line.iter_mut().zip(&across);
+                along.for_each(|(pixel, &across)| *pixel = lattice.at(across, up[row]));
             });
             pixels
         };
@@ -52,7 +52,7 @@ impl Relief {
         if let Some(contours) = contours {
             let elevations = Elevations { elevation: &elevation, columns, rows };
             ink.resize(columns * rows, 0.0);
-            ink.par_chunks_mut(columns).enumerate().for_each(|(row, line)| {
+            rows::each(&mut ink, columns, |row, line| {
                 for (column, ink) in line.iter_mut().enumerate() {
                     *ink = contours.ink(elevation[row * columns + column], elevations.slope(column, row));
                 }
@@ -80,7 +80,7 @@ pub(super) fn hillshade(bed: &[f64], nx: usize, ny: usize, cell: f64) -> Vec<f64
     let (up, level) = SUN.to_radians().sin_cos();
     let north_west = level * std::f64::consts::FRAC_1_SQRT_2;
     let mut light = vec![f64::NAN; nx * ny];
-    light.par_chunks_mut(nx).enumerate().for_each(|(j, row)| {
+    rows::each(&mut light, nx, |j, row| {
         for (i, light) in row.iter_mut().enumerate() {
             let here = j * nx + i;
             // The slope between two neighbours, or one neighbour and the cell itself at a rim.

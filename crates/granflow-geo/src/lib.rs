@@ -3,6 +3,7 @@
 //! [`raster`] reads and writes GeoTIFF and ESRI ASCII, [`terrain`] fits slope and curvature to the cells, [`release`] turns
 //! polygons, rasters and caps into volume per plan area.
 
+mod cells;
 pub mod raster;
 pub mod release;
 pub mod terrain;

@@ -55,11 +55,23 @@ impl Raster {
         let mut magic = [0; 4];
         let file = std::fs::File::open(path).and_then(|mut file| file.read(&mut magic));
         file.map_err(|source| RasterError::Io { path: path.into(), source })?;
-        let raster = match &magic {
-            b"II*\0" | b"MM\0*" | b"II+\0" | b"MM\0+" => geotiff::read(path, crs)?,
-            _ => ascii::read(path, crs)?,
-        };
+        let raster = if is_tiff(&magic) { geotiff::read(path, crs)? } else { ascii::read(path, crs)? };
         raster.checked(path)
+    }
+
+    /// As [`Raster::read_in`], from the bytes of a file that is called `name` in messages.
+    ///
+    /// What a `.prj` file beside an ASCII grid says is passed as `crs`.
+    ///
+    /// # Errors
+    /// As [`Raster::read_in`].
+    pub fn from_bytes(name: &Path, bytes: Vec<u8>, crs: Option<&Crs>) -> Result<Raster, RasterError> {
+        let raster = if is_tiff(&bytes) {
+            geotiff::from_bytes(name, bytes, crs)?
+        } else {
+            ascii::from_bytes(name, &bytes, None, crs)?
+        };
+        raster.checked(name)
     }
 
     /// A raster of the same cells and CRS with other values, or none.
@@ -153,6 +165,11 @@ impl Raster {
         }
         Ok(self)
     }
+}
+
+/// Whether a file that begins so is a TIFF or BigTIFF.
+fn is_tiff(bytes: &[u8]) -> bool {
+    [b"II*\0", b"MM\0*", b"II+\0", b"MM\0+"].iter().any(|magic| bytes.starts_with(&magic[..]))
 }
 
 /// The file beside `path` that has another extension, in lower or upper case.

@@ -9,13 +9,14 @@ mod vector;
 pub use error::ReleaseError;
 pub use outlines::Outlines;
 pub use sparse::Sparse;
+pub use vector::Layer;
 
 use crate::raster::Raster;
 use crate::terrain::Terrain;
 use geo::{Area, BooleanOps, BoundingRect, Intersects, MultiPolygon, Polygon, Validation, unary_union};
 use std::collections::BTreeMap;
 use std::path::Path;
-use vector::{Feature, Layer};
+use vector::Feature;
 
 /// Where the thickness of a polygon comes from.
 #[derive(Debug, Clone, PartialEq)]
@@ -61,7 +62,34 @@ pub fn per_plan_area(thickness: Sparse, terrain: &Terrain, measured: Measured) -
 /// cross themselves, a missing attribute, a thickness that is negative or no number, a CRS that contradicts that
 /// of `template`, and polygons beyond the edge of `template` or on its nodata cells.
 pub fn polygons(path: &Path, thickness: &Thickness, template: &Raster) -> Result<Sparse, ReleaseError> {
-    let layer = Layer::read(path)?;
+    Layer::read(path)?.thickness(thickness, template)
+}
+
+impl Layer {
+    /// Thickness per cell \[m\] of these polygons on the grid of `template`; see [`polygons`].
+    ///
+    /// # Errors
+    /// As [`polygons`], but for reading.
+    pub fn thickness(self, thickness: &Thickness, template: &Raster) -> Result<Sparse, ReleaseError> {
+        laid(self, thickness, template)
+    }
+
+    /// All polygons; where they overlap, each stands for itself.
+    ///
+    /// # Errors
+    /// [`ReleaseError::Shape`] for rings that cross themselves.
+    pub fn outlines(self) -> Result<Vec<Polygon>, ReleaseError> {
+        let mut outlines = Vec::new();
+        for (feature, number) in self.features.into_iter().zip(1..) {
+            outlines.extend(sound(&self.name, number, feature.polygons)?);
+        }
+        Ok(outlines)
+    }
+}
+
+/// [`Layer::thickness`].
+fn laid(layer: Layer, thickness: &Thickness, template: &Raster) -> Result<Sparse, ReleaseError> {
+    let path = &*layer.name;
     if let (Some(own), Some(terrain)) = (&layer.crs, &template.crs)
         && let Some(proof) = own.contradiction(terrain)
     {
@@ -70,14 +98,8 @@ pub fn polygons(path: &Path, thickness: &Thickness, template: &Raster) -> Result
     let mut areas: Vec<(Polygon, f64)> = Vec::new();
     for (feature, number) in layer.features.into_iter().zip(1..) {
         let thickness = thickness_of(path, number, &feature, thickness)?;
-        for polygon in &feature.polygons {
-            sound(polygon).map_err(|problem| ReleaseError::Shape {
-                path: path.into(),
-                feature: number,
-                problem,
-            })?;
-        }
-        areas.extend(feature.polygons.into_iter().map(|polygon| (polygon, thickness)));
+        let polygons = sound(path, number, feature.polygons)?;
+        areas.extend(polygons.into_iter().map(|polygon| (polygon, thickness)));
     }
     let Some(extent) =
         MultiPolygon(areas.iter().map(|(polygon, _)| polygon.clone()).collect()).bounding_rect()
@@ -119,7 +141,15 @@ pub fn polygons(path: &Path, thickness: &Thickness, template: &Raster) -> Result
 /// [`ReleaseError::Raster`] with what [`Raster::read`] says, a negative thickness with its place, a raster without
 /// any material, and material beyond the edge of `template` or on its nodata cells.
 pub fn raster(path: &Path, template: &Raster) -> Result<Sparse, ReleaseError> {
-    let given = Raster::read_in(path, template.crs.as_ref())?;
+    carried(path, &Raster::read_in(path, template.crs.as_ref())?, template)
+}
+
+/// As [`raster`], for a raster that was read before; `path` stands in messages.
+///
+/// # Errors
+/// As [`raster`], but for reading.
+pub fn carried(path: &Path, given: &Raster, template: &Raster) -> Result<Sparse, ReleaseError> {
+    given.same_system(path, template)?;
     if let Some(k) = given.values.iter().position(|h| *h < 0.0) {
         let (x, y) = (given.x(k % given.columns), given.y(k / given.columns));
         return Err(ReleaseError::Negative { path: path.into(), x, y, found: given.values[k] });
@@ -130,7 +160,7 @@ pub fn raster(path: &Path, template: &Raster) -> Result<Sparse, ReleaseError> {
     }
     let place = |r: &Raster| (r.columns, r.rows, r.west, r.south, r.cell);
     let on_values = |(h, b): (f64, &f64)| if h.is_nan() || b.is_nan() { 0.0 } else { h };
-    let height = if place(&given) == place(template) {
+    let height = if place(given) == place(template) {
         Sparse::of(given.values.iter().copied().zip(&template.values).map(on_values))
     } else {
         let cell = template.cell * template.cell;
@@ -224,15 +254,23 @@ fn overlap(polygon: &Polygon, before: &[(Polygon, f64)]) -> Vec<Polygon> {
 }
 
 /// Refuses rings that cross themselves or each other; rings that only touch enclose a clear area and pass.
-fn sound(polygon: &Polygon) -> Result<(), String> {
-    let Err(problem) = polygon.check_validation() else { return Ok(()) };
+fn sound(path: &Path, feature: usize, polygons: Vec<Polygon>) -> Result<Vec<Polygon>, ReleaseError> {
+    match polygons.iter().find_map(crossing) {
+        Some(problem) => Err(ReleaseError::Shape { path: path.into(), feature, problem }),
+        None => Ok(polygons),
+    }
+}
+
+/// What is wrong with the rings of a polygon, and the cure.
+fn crossing(polygon: &Polygon) -> Option<String> {
+    let problem = polygon.check_validation().err()?;
     let finite = polygon.exterior().coords().all(|c| c.x.is_finite() && c.y.is_finite());
     let (area, union) =
         (polygon.unsigned_area(), if finite { unary_union([polygon]).unsigned_area() } else { f64::NAN });
     if (area - union).abs() <= 1e-6 * area {
-        return Ok(());
+        return None;
     }
-    Err(format!(
+    Some(format!(
         "{problem}; mend it with QGIS (Fix geometries) or\n  ogr2ogr -makevalid mended.shp THIS_FILE"
     ))
 }

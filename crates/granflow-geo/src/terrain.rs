@@ -4,9 +4,9 @@ mod fit;
 
 pub use fit::Fit;
 
+use crate::cells::reduced;
 use crate::raster::Raster;
 use fit::Windows;
-use rayon::prelude::*;
 use std::sync::Arc;
 
 /// The length over which the bed's gradient and curvature are taken.
@@ -72,25 +72,32 @@ impl Terrain {
         if self.curved { fit } else { Fit { hessian: [0.0; 3], ..fit } }
     }
 
-    /// The fits of all cells with values.
-    fn fits(&self) -> impl ParallelIterator<Item = Fit> {
+    /// What `both` makes of the values of the fits of all cells with values.
+    fn reduced<T: Copy + Send + Sync>(
+        &self,
+        value: impl Fn(Fit) -> T + Send + Sync,
+        none: T,
+        both: impl Fn(T, T) -> T + Send + Sync,
+    ) -> T {
         let Raster { columns, values, .. } = &*self.bed;
-        let valid = (0..values.len()).into_par_iter().filter(|&k| !values[k].is_nan());
-        valid.map(move |k| self.fit([k % columns, k / columns]))
+        let of = |k: usize| (!values[k].is_nan()).then(|| value(self.fit([k % columns, k / columns])));
+        reduced(values.len(), of, none, both)
     }
 
     /// How many cells have a fit of this kind.
     pub fn count(&self, kind: impl Fn(&Fit) -> bool + Sync + Send) -> usize {
-        self.fits().filter(kind).count()
+        self.reduced(|fit| usize::from(kind(&fit)), 0, |a, b| a + b)
     }
 
     /// Largest slope, and the cells steeper than `limit` \[radians\].
     pub fn steepness(&self, limit: f64) -> Steepness {
-        let tangents = self.fits().map(|fit| fit.gradient[0].hypot(fit.gradient[1]));
-        let one = |t: f64| (1, usize::from(t > limit.tan()), t);
+        let one = |fit: Fit| {
+            let tangent = fit.gradient[0].hypot(fit.gradient[1]);
+            (1, usize::from(tangent > limit.tan()), tangent)
+        };
         type Found = (usize, usize, f64);
         let both = |a: Found, b: Found| (a.0 + b.0, a.1 + b.1, a.2.max(b.2));
-        let (cells, steeper, max) = tangents.map(one).reduce(|| (0, 0, 0.0), both);
+        let (cells, steeper, max) = self.reduced(one, (0, 0, 0.0), both);
         Steepness { cells, steeper, share: steeper as f64 / cells.max(1) as f64, max_slope: max.atan() }
     }
 }

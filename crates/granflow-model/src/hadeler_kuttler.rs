@@ -15,8 +15,8 @@ pub mod exact;
 pub mod scheme;
 pub mod table;
 
-use crate::real::{Real, each, unroll};
-use crate::scheme::Parts;
+use crate::real::Real;
+use crate::scheme::{Components, components};
 
 /// The unknowns of a cell: u at its node with the smallest coordinates, v in the cell.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -53,45 +53,12 @@ impl<const D: usize, R: Real> Ground<D, R> {
     /// Beside the table.
     #[inline(always)]
     pub fn outside() -> Self {
-        Self::gather(|_| R::zero())
+        Self::load(|_| R::zero())
     }
 }
 
-impl<R: Real> Parts<R> for Pile<R> {
-    const COUNT: usize = 2;
-    #[inline(always)]
-    fn gather(part: impl Fn(usize) -> R) -> Self {
-        Pile { u: part(0), v: part(1) }
-    }
-    #[inline(always)]
-    fn scatter(self, mut put: impl FnMut(usize, R)) {
-        put(0, self.u);
-        put(1, self.v);
-    }
-}
+components!([R: Real] Pile<R> { u: R, v: R });
 
-impl<const D: usize, R: Real> Parts<R> for Ground<D, R> {
-    const COUNT: usize = 4 + 2 * D;
-    #[inline(always)]
-    fn gather(part: impl Fn(usize) -> R) -> Self {
-        Ground {
-            bed: part(0),
-            inside: part(1),
-            weight: part(2),
-            hole: part(3),
-            source: each!(k => part(4 + k)),
-            wall: each!(k => part(4 + D + k)),
-        }
-    }
-    #[inline(always)]
-    fn scatter(self, mut put: impl FnMut(usize, R)) {
-        put(0, self.bed);
-        put(1, self.inside);
-        put(2, self.weight);
-        put(3, self.hole);
-        unroll!(axis in D => {
-            put(4 + axis, self.source[axis]);
-            put(4 + D + axis, self.wall[axis]);
-        });
-    }
-}
+components!([const D: usize, R: Real] Ground<D, R> {
+    bed: R, inside: R, weight: R, hole: R, source: [R; D], wall: [R; D]
+});

@@ -4,12 +4,12 @@ use crate::real::Real;
 
 /// May values have limited slopes across a cell, or are they known to be constant there?
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Varies<const LIMITED: bool>;
+pub struct Limited<const LIMITED: bool>;
 
 /// The smaller of two differences where both rise, and where both fall; 0 else. One of the two is 0.
 #[inline(always)]
 fn smaller<R: Real>(a: R, b: R) -> [R; 2] {
-    [a.min(b).positive(), a.max(b).min(R::zero())]
+    [a.min(b).positive_part(), a.max(b).min(R::zero())]
 }
 
 /// The smallest of two differences of one sign, else 0: minmod(a, b).
@@ -26,6 +26,8 @@ pub fn minmod<R: Real>(a: R, b: R) -> R {
 /// 0.5007, with 1 0.5006.
 #[inline(always)]
 pub fn central<R: Real>(lo: R, hi: R) -> R {
-    let [rise, fall] = smaller(lo, hi).map(|slope| slope * R::of(1.5));
-    ((lo + hi) * R::of(0.5)).min(rise).max(fall)
+    // Not by `map`: a function in between may stay one, and is then not computed on lanes.
+    let ([rise, fall], factor) = (smaller(lo, hi), R::splat(1.5));
+    let (rise, fall) = (rise * factor, fall * factor);
+    ((lo + hi) * R::splat(0.5)).min(rise).max(fall)
 }

@@ -2,6 +2,11 @@
 //!
 //! Decisions on cell values are [`Real::select`], never `if`: a lane cannot branch.
 
+#[cfg(any(test, not(feature = "std")))]
+mod logarithm;
+#[cfg(any(test, not(feature = "std")))]
+mod rounded;
+
 use core::fmt::Debug;
 use core::ops::{Add, BitAnd, BitOr, Div, Mul, Neg, Not, Sub};
 
@@ -31,13 +36,13 @@ pub trait Real:
         + Not<Output = Self::Mask>;
 
     /// The same constant in every place.
-    fn of(value: f64) -> Self;
+    fn splat(value: f64) -> Self;
     /// self < other.
     fn lt(self, other: Self) -> Self::Mask;
     /// self <= other.
     fn le(self, other: Self) -> Self::Mask;
     /// self == other, as numbers (so -0 is 0).
-    fn same(self, other: Self) -> Self::Mask;
+    fn equals(self, other: Self) -> Self::Mask;
     /// `yes` where the mask holds, `no` elsewhere; both are computed.
     fn select(mask: Self::Mask, yes: Self, no: Self) -> Self;
     /// Does the mask hold anywhere? Only to leave out work whose result is not used.
@@ -55,7 +60,7 @@ pub trait Real:
     /// Zero.
     #[inline(always)]
     fn zero() -> Self {
-        Self::of(0.0)
+        Self::splat(0.0)
     }
     /// The smaller one, `select(self < other)`.
     #[inline(always)]
@@ -69,7 +74,7 @@ pub trait Real:
     }
     /// max(self, 0).
     #[inline(always)]
-    fn positive(self) -> Self {
+    fn positive_part(self) -> Self {
         self.max(Self::zero())
     }
 
@@ -79,7 +84,7 @@ pub trait Real:
     /// For |s| <= 1/2, with z = s^2: x = s + s z p(z), r = 1 - z k(z) (Chebyshev fits of p and k on \[0, 1/4\], relative
     /// errors 6e-17): no root. Beyond, asin s = pi/2 - 2 asin(sqrt((1 - s)/2)) with the same polynomial.
     #[inline(always)]
-    fn arc(self) -> [Self; 2] {
+    fn asin_and_cos(self) -> [Self; 2] {
         #[expect(clippy::excessive_precision, reason = "the fit as it came, rounded by the compiler")]
         const P: [f64; 12] = [
             0.028169218060881412899,
@@ -110,27 +115,27 @@ pub trait Real:
             0.12500000000022245743,
             0.49999999999999980674,
         ];
-        let one = Self::of(1.0);
+        let one = Self::splat(1.0);
         let square = self * self;
-        let steep = Self::of(0.25).lt(square);
+        let steep = Self::splat(0.25).lt(square);
         if !Self::any(steep) {
             return [
                 (self * square).mul_add(Self::polynomial(P, square), self),
                 one - square * Self::polynomial(K, square),
             ];
         }
-        let right = Self::of(core::f64::consts::FRAC_PI_2);
+        let right = Self::splat(core::f64::consts::FRAC_PI_2);
         let negative = self.lt(Self::zero());
-        if !Self::any(!square.same(one)) {
+        if !Self::any(!square.equals(one)) {
             return [Self::select(negative, -right, right), Self::zero()];
         }
         let size = self.abs();
-        let folded = (one - size) * Self::of(0.5);
+        let folded = (one - size) * Self::splat(0.5);
         let (z, s) = (Self::select(steep, folded, square), Self::select(steep, folded.sqrt(), self));
         let p = Self::polynomial(P, z);
         let rest = (s * z) * p;
         // pi/2 - 2 (s + rest), the large terms first; the last constant is what f64 cuts off from pi/2
-        let far = (right - (s + s)) - ((rest + rest) - Self::of(6.123_233_995_736_766e-17));
+        let far = (right - (s + s)) - ((rest + rest) - Self::splat(6.123_233_995_736_766e-17));
         let far = Self::select(negative, -far, far);
         let near = one - z * Self::polynomial(K, z);
         [Self::select(steep, far, (s * z).mul_add(p, s)), Self::select(steep, (one - square).sqrt(), near)]
@@ -140,10 +145,10 @@ pub trait Real:
     #[inline(always)]
     fn polynomial(p: [f64; 12], z: Self) -> Self {
         let square = z * z;
-        let (mut odd, mut even) = (Self::of(p[0]), Self::of(p[1]));
+        let (mut odd, mut even) = (Self::splat(p[0]), Self::splat(p[1]));
         for k in 1..6 {
-            odd = odd.mul_add(square, Self::of(p[2 * k]));
-            even = even.mul_add(square, Self::of(p[2 * k + 1]));
+            odd = odd.mul_add(square, Self::splat(p[2 * k]));
+            even = even.mul_add(square, Self::splat(p[2 * k + 1]));
         }
         odd.mul_add(z, even)
     }
@@ -152,7 +157,7 @@ pub trait Real:
 impl Real for f64 {
     type Mask = bool;
     #[inline(always)]
-    fn of(value: f64) -> f64 {
+    fn splat(value: f64) -> f64 {
         value
     }
     #[inline(always)]
@@ -164,7 +169,7 @@ impl Real for f64 {
         self <= other
     }
     #[inline(always)]
-    fn same(self, other: f64) -> bool {
+    fn equals(self, other: f64) -> bool {
         self == other
     }
     #[inline(always)]
@@ -177,7 +182,10 @@ impl Real for f64 {
     }
     #[inline(always)]
     fn sqrt(self) -> f64 {
-        f64::sqrt(self)
+        cfg_select! {
+            feature = "std" => { f64::sqrt(self) }
+            _ => { rounded::sqrt(self) }
+        }
     }
     #[inline(always)]
     fn abs(self) -> f64 {
@@ -185,11 +193,26 @@ impl Real for f64 {
     }
     #[inline(always)]
     fn ln(self) -> f64 {
-        f64::ln(self)
+        cfg_select! {
+            feature = "std" => { f64::ln(self) }
+            _ => { logarithm::ln(self) }
+        }
     }
     #[inline(always)]
     fn mul_add(self, factor: f64, term: f64) -> f64 {
-        f64::mul_add(self, factor, term)
+        cfg_select! {
+            feature = "std" => { f64::mul_add(self, factor, term) }
+            _ => { rounded::mul_add(self, factor, term) }
+        }
+    }
+}
+
+/// base^exponent, for base >= 0. With the feature `std` it is the standard library's.
+#[inline]
+pub(crate) fn power(base: f64, exponent: f64) -> f64 {
+    cfg_select! {
+        feature = "std" => { base.powf(exponent) }
+        _ => { logarithm::power(base, exponent) }
     }
 }
 
@@ -200,11 +223,11 @@ pub const fn nth(k: usize) -> usize {
     k
 }
 
-/// An array made item by item: `each!(k => a[k] + b[k])`.
+/// An array made item by item: `per_axis!(k => a[k] + b[k])`.
 ///
 /// As `core::array::from_fn`, but without a function in between: what is computed on lanes is inlined whole or not on lanes.
 #[macro_export]
-macro_rules! each {
+macro_rules! per_axis {
     ($k:ident => $value:expr) => {{
         let first = {
             let $k = $crate::real::nth(0);
@@ -223,18 +246,18 @@ macro_rules! each {
         items
     }};
 }
-pub use each;
+pub use per_axis;
 
-/// `unroll!(k in N => { .. })`: the block for k = 0 .. N, N at most 3, one after the other.
+/// `for_axis!(k in N => { .. })`: the block for k = 0 .. N, N at most 3, one after the other.
 ///
 /// A loop over the axes that is left to the compiler may stay one, and then keeps its arrays in memory.
 #[macro_export]
-macro_rules! unroll {
+macro_rules! for_axis {
     ($k:ident in $n:ident => $body:block) => {{
         assert!($n <= 3);
-        $crate::real::unroll!(@one $k, 0, $n, $body);
-        $crate::real::unroll!(@one $k, 1, $n, $body);
-        $crate::real::unroll!(@one $k, 2, $n, $body);
+        $crate::real::for_axis!(@one $k, 0, $n, $body);
+        $crate::real::for_axis!(@one $k, 1, $n, $body);
+        $crate::real::for_axis!(@one $k, 2, $n, $body);
     }};
     (@one $k:ident, $value:literal, $n:ident, $body:block) => {
         if $value < $n {
@@ -243,13 +266,13 @@ macro_rules! unroll {
         }
     };
 }
-pub use unroll;
+pub use for_axis;
 
 /// Inner product of two short vectors, summed in pairs from the first axis on.
 #[inline(always)]
 pub fn dot<const D: usize, R: Real>(a: [R; D], b: [R; D]) -> R {
     let mut sum = a[0] * b[0];
-    unroll!(axis in D => {
+    for_axis!(axis in D => {
         if axis > 0 {
             sum = sum + a[axis] * b[axis];
         }
@@ -261,7 +284,7 @@ pub fn dot<const D: usize, R: Real>(a: [R; D], b: [R; D]) -> R {
 #[inline(always)]
 pub fn total<const D: usize, R: Real>(values: [R; D]) -> R {
     let mut sum = values[0];
-    unroll!(axis in D => {
+    for_axis!(axis in D => {
         if axis > 0 {
             sum = sum + values[axis];
         }
@@ -273,7 +296,7 @@ pub fn total<const D: usize, R: Real>(values: [R; D]) -> R {
 #[inline(always)]
 pub fn largest<const D: usize, R: Real>(values: [R; D]) -> R {
     let mut most = values[0];
-    unroll!(axis in D => {
+    for_axis!(axis in D => {
         if axis > 0 {
             most = most.max(values[axis]);
         }
@@ -283,12 +306,12 @@ pub fn largest<const D: usize, R: Real>(values: [R; D]) -> R {
 
 /// A sum that keeps what rounding drops (Neumaier 1974).
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Sum {
+pub struct CompensatedSum {
     high: f64,
     low: f64,
 }
 
-impl Sum {
+impl CompensatedSum {
     /// Add a number.
     pub fn add(&mut self, value: f64) {
         let sum = self.high + value;
@@ -307,9 +330,9 @@ impl Sum {
     pub fn parts(&self) -> [f64; 2] {
         [self.high, self.low]
     }
-    /// From [`Sum::parts`].
-    pub fn from_parts([high, low]: [f64; 2]) -> Sum {
-        Sum { high, low }
+    /// From [`CompensatedSum::parts`].
+    pub fn from_parts([high, low]: [f64; 2]) -> CompensatedSum {
+        CompensatedSum { high, low }
     }
 }
 
@@ -323,17 +346,17 @@ mod tests {
         let (mut worst, mut worst_root): (f64, f64) = (0.0, 0.0);
         for k in -200_000..=200_000 {
             let s = f64::from(k) / 200_000.0;
-            let [ours, root] = Real::arc(s);
+            let [ours, root] = Real::asin_and_cos(s);
             let (exact, exact_root) = (f64::asin(s), ((1.0 - s) * (1.0 + s)).sqrt());
             worst = worst.max((ours - exact).abs() / exact.abs().max(f64::MIN_POSITIVE));
             // 1 - s^2 as the schemes form it loses what lies below 1e-16 of 1.
             worst_root = worst_root.max((root - exact_root).abs() * exact_root);
-            assert_eq!(Real::arc(-s), [-ours, root]);
+            assert_eq!(Real::asin_and_cos(-s), [-ours, root]);
         }
         assert!(worst < 4.5e-16, "relative error {worst:e}");
         assert!(worst_root < 2.5e-16, "error of the root {worst_root:e}");
-        assert_eq!(Real::arc(1.0_f64), [core::f64::consts::FRAC_PI_2, 0.0]);
-        assert_eq!(Real::arc(-1.0_f64), [-core::f64::consts::FRAC_PI_2, 0.0]);
-        assert_eq!(Real::arc(0.0_f64), [0.0, 1.0]);
+        assert_eq!(Real::asin_and_cos(1.0_f64), [core::f64::consts::FRAC_PI_2, 0.0]);
+        assert_eq!(Real::asin_and_cos(-1.0_f64), [-core::f64::consts::FRAC_PI_2, 0.0]);
+        assert_eq!(Real::asin_and_cos(0.0_f64), [0.0, 1.0]);
     }
 }

@@ -12,14 +12,14 @@ pub mod friction;
 pub mod ground;
 pub mod kinetic;
 
-use crate::real::{Real, each, total, unroll};
-use crate::scheme::{Parts, Watch};
+use crate::real::{Real, for_axis, per_axis, total};
+use crate::scheme::{Diagnostics, components};
 use ground::Bed;
 
 /// A depth below the smallest normal number is none: subnormal numbers round by as much as they hold.
 #[inline(always)]
 fn normal<R: Real>(h: R) -> R {
-    R::select(h.abs().lt(R::of(f64::MIN_POSITIVE)), R::zero(), h)
+    R::select(h.abs().lt(R::splat(f64::MIN_POSITIVE)), R::zero(), h)
 }
 
 /// The unknowns of a cell.
@@ -41,18 +41,18 @@ impl<const D: usize, R: Real> Flow<D, R> {
     /// u = q/h, and 0 where h is none.
     #[inline(always)]
     pub fn velocity(&self) -> [R; D] {
-        let (zero, one) = (R::zero(), R::of(1.0));
-        let wet = R::of(f64::MIN_POSITIVE).le(self.h);
+        let (zero, one) = (R::zero(), R::splat(1.0));
+        let wet = R::splat(f64::MIN_POSITIVE).le(self.h);
         let per = R::select(wet, one / R::select(wet, self.h, one), zero);
-        each!(k => self.q[k] * per)
+        per_axis!(k => self.q[k] * per)
     }
 
     /// q = 0 in every component.
     #[inline(always)]
     pub fn is_still(&self) -> R::Mask {
-        let mut still = self.q[0].same(R::zero());
-        unroll!(axis in D => {
-            still = still & self.q[axis].same(R::zero());
+        let mut still = self.q[0].equals(R::zero());
+        for_axis!(axis in D => {
+            still = still & self.q[axis].equals(R::zero());
         });
         still
     }
@@ -67,42 +67,25 @@ impl<const D: usize, R: Real> Flow<D, R> {
     #[inline(always)]
     pub fn rate<B: Bed<D, R>>(&self, bed: &B, per: [R; D]) -> R {
         let u = self.velocity();
-        let along: [R; D] = each!(axis => {
+        let along: [R; D] = per_axis!(axis => {
             let beta = bed.beta(axis);
-            (u[axis].abs() + ((beta + beta) * self.h.positive()).sqrt()) * per[axis]
+            (u[axis].abs() + ((beta + beta) * self.h.positive_part()).sqrt()) * per[axis]
         });
         total(along)
     }
 
     /// Volume, speed, energy of this state on `bed`; a film is thinner than `film`.
     #[inline(always)]
-    pub fn watch<B: Bed<D, R>>(&self, bed: &B, film: R) -> Watch<R> {
-        let square = bed.square(self.velocity());
-        Watch {
+    pub fn diagnostics<B: Bed<D, R>>(&self, bed: &B, film: R) -> Diagnostics<R> {
+        let speed_squared = bed.square(self.velocity());
+        Diagnostics {
             volume: self.h,
-            square,
-            energy: self.h * square * R::of(0.5),
+            speed_squared,
+            energy: self.h * speed_squared * R::splat(0.5),
             thickness: bed.thickness(self.h),
-            film: R::select(self.h.lt(film), R::of(1.0), R::zero()),
+            film: R::select(self.h.lt(film), R::splat(1.0), R::zero()),
         }
     }
 }
 
-impl<const D: usize, R: Real> Parts<R> for Flow<D, R> {
-    const COUNT: usize = 1 + D;
-    #[inline(always)]
-    fn gather(part: impl Fn(usize) -> R) -> Self {
-        let mut flow = Flow::still(part(0));
-        unroll!(axis in D => {
-            flow.q[axis] = part(1 + axis);
-        });
-        flow
-    }
-    #[inline(always)]
-    fn scatter(self, mut put: impl FnMut(usize, R)) {
-        put(0, self.h);
-        unroll!(axis in D => {
-            put(1 + axis, self.q[axis]);
-        });
-    }
-}
+components!([const D: usize, R: Real] Flow<D, R> { h: R, q: [R; D] });

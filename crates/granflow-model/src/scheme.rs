@@ -1,56 +1,57 @@
 //! A scheme is a few pointwise functions; arrays, axes, threads and files live elsewhere.
 
-use crate::real::{Real, each, unroll};
+use crate::real::{Real, for_axis, per_axis};
+use crate::time::Stages;
 
 /// A value of a cell that is stored as a few numbers, one array each (struct of arrays).
 ///
-/// `gather` asks for, and `scatter` hands out, parts below `COUNT`; the engine panics at others.
-pub trait Parts<R: Real>: Copy + Send + Sync + 'static {
+/// `load` asks for, and `store` hands out, parts below `COUNT`; the engine panics at others.
+pub trait Components<R: Real>: Copy + Send + Sync + 'static {
     /// How many numbers.
     const COUNT: usize;
     /// The parts that a grid keeps in single precision, a bit each.
-    const SINGLE: u32 = 0;
+    const F32_MASK: u32 = 0;
     /// The parts that are the same in all cells of a grid, a bit each: they are kept once.
-    const SHARED: u32 = 0;
+    const UNIFORM_MASK: u32 = 0;
     /// Gather the value from its numbers.
-    fn gather(part: impl Fn(usize) -> R) -> Self;
+    fn load(part: impl Fn(usize) -> R) -> Self;
     /// Hand the numbers out.
-    fn scatter(self, put: impl FnMut(usize, R));
+    fn store(self, put: impl FnMut(usize, R));
 }
 
-impl<R: Real> Parts<R> for () {
+impl<R: Real> Components<R> for () {
     const COUNT: usize = 0;
     #[inline(always)]
-    fn gather(_part: impl Fn(usize) -> R) -> Self {}
+    fn load(_part: impl Fn(usize) -> R) -> Self {}
     #[inline(always)]
-    fn scatter(self, _put: impl FnMut(usize, R)) {}
+    fn store(self, _put: impl FnMut(usize, R)) {}
 }
 
-impl<R: Real> Parts<R> for R {
+impl<R: Real> Components<R> for R {
     const COUNT: usize = 1;
     #[inline(always)]
-    fn gather(part: impl Fn(usize) -> R) -> Self {
+    fn load(part: impl Fn(usize) -> R) -> Self {
         part(0)
     }
     #[inline(always)]
-    fn scatter(self, mut put: impl FnMut(usize, R)) {
+    fn store(self, mut put: impl FnMut(usize, R)) {
         put(0, self);
     }
 }
 
-impl<R: Real, P: Parts<R>, const N: usize> Parts<R> for [P; N] {
+impl<R: Real, P: Components<R>, const N: usize> Components<R> for [P; N] {
     const COUNT: usize = N * P::COUNT;
     #[inline(always)]
-    fn gather(part: impl Fn(usize) -> R) -> Self {
-        each!(item => P::gather(
+    fn load(part: impl Fn(usize) -> R) -> Self {
+        per_axis!(item => P::load(
             #[inline(always)]
             |k| part(item * P::COUNT + k),
         ))
     }
     #[inline(always)]
-    fn scatter(self, mut put: impl FnMut(usize, R)) {
-        unroll!(item in N => {
-            self[item].scatter(
+    fn store(self, mut put: impl FnMut(usize, R)) {
+        for_axis!(item in N => {
+            self[item].store(
                 #[inline(always)]
                 |k, value| put(item * P::COUNT + k, value),
             );
@@ -58,46 +59,38 @@ impl<R: Real, P: Parts<R>, const N: usize> Parts<R> for [P; N] {
     }
 }
 
-/// Implements [`Parts`] for a struct, field by field; the fields of the second list are masks, kept as 1 and 0.
+/// Implements [`Components`] for a struct, field by field in the order of the list, whatever their order in the struct:
+/// `components!([const D: usize, R: Real] Flow<D, R> { h: R, q: [R; D] });`
 #[macro_export]
-macro_rules! parts {
-    ([$($generics:tt)*] $name:ty { $($field:ident: $kind:ty),* } masks { $($mask:ident),* }) => {
-        impl<$($generics)*> $crate::scheme::Parts<R> for $name {
-            const COUNT: usize =
-                0 $(+ <$kind as $crate::scheme::Parts<R>>::COUNT)* $(+ { stringify!($mask); 1 })*;
+macro_rules! components {
+    ([$($generics:tt)*] $name:ty { $($field:ident: $kind:ty),* $(,)? }) => {
+        impl<$($generics)*> $crate::scheme::Components<R> for $name {
+            const COUNT: usize = 0 $(+ <$kind as $crate::scheme::Components<R>>::COUNT)*;
             #[inline(always)]
             #[allow(unused_assignments, unused_mut, unused_variables, reason = "the last field moves on as the others do")]
-            fn gather(part: impl Fn(usize) -> R) -> Self {
+            fn load(part: impl Fn(usize) -> R) -> Self {
                 let mut next = 0;
                 $(
                     let from = next;
-                    next += <$kind as $crate::scheme::Parts<R>>::COUNT;
-                    let $field = <$kind as $crate::scheme::Parts<R>>::gather(#[inline(always)] |k| part(from + k));
+                    next += <$kind as $crate::scheme::Components<R>>::COUNT;
+                    let $field = <$kind as $crate::scheme::Components<R>>::load(#[inline(always)] |k| part(from + k));
                 )*
-                $(
-                    let $mask = R::zero().lt(part(next));
-                    next += 1;
-                )*
-                Self { $($field,)* $($mask,)* }
+                Self { $($field),* }
             }
             #[inline(always)]
             #[allow(unused_assignments, unused_mut, unused_variables, reason = "the last field moves on as the others do")]
-            fn scatter(self, mut put: impl FnMut(usize, R)) {
+            fn store(self, mut put: impl FnMut(usize, R)) {
                 let mut next = 0;
                 $(
                     let from = next;
-                    next += <$kind as $crate::scheme::Parts<R>>::COUNT;
-                    <$kind as $crate::scheme::Parts<R>>::scatter(self.$field, #[inline(always)] |k, value| put(from + k, value));
-                )*
-                $(
-                    put(next, R::select(self.$mask, R::of(1.0), R::zero()));
-                    next += 1;
+                    next += <$kind as $crate::scheme::Components<R>>::COUNT;
+                    <$kind as $crate::scheme::Components<R>>::store(self.$field, #[inline(always)] |k, value| put(from + k, value));
                 )*
             }
         }
     };
 }
-pub use parts;
+pub use components;
 
 /// A cell's state and what is fixed there.
 #[derive(Clone, Copy, Debug)]
@@ -114,7 +107,7 @@ pub struct Spacing<const D: usize, R> {
     /// dx, dy in the units of the case.
     pub size: [R; D],
     /// 1/dx, 1/dy.
-    pub per: [R; D],
+    pub inv: [R; D],
     /// The smallest of dx, dy.
     pub smallest: f64,
 }
@@ -124,8 +117,8 @@ impl<const D: usize, R: Real> Spacing<D, R> {
     #[inline(always)]
     pub fn new(size: [f64; D]) -> Self {
         Spacing {
-            size: each!(k => R::of(size[k])),
-            per: each!(k => R::of(1.0 / size[k])),
+            size: per_axis!(k => R::splat(size[k])),
+            inv: per_axis!(k => R::splat(1.0 / size[k])),
             smallest: size.into_iter().fold(f64::INFINITY, f64::min),
         }
     }
@@ -133,7 +126,7 @@ impl<const D: usize, R: Real> Spacing<D, R> {
 
 /// A cell and its neighbours along each axis.
 #[derive(Clone, Copy, Debug)]
-pub struct Near<const D: usize, R, S, G> {
+pub struct Neighbours<const D: usize, R, S, G> {
     /// The cell itself.
     pub here: Cell<S, G>,
     /// The neighbour towards smaller coordinates, per axis.
@@ -145,7 +138,7 @@ pub struct Near<const D: usize, R, S, G> {
 }
 
 /// The neighbourhood of a cell, read where a scheme asks.
-pub trait Window<const D: usize, R: Real, S: Copy, G: Copy> {
+pub trait Stencil<const D: usize, R: Real, S: Copy, G: Copy> {
     /// The cell `offset` cells away along each axis, at most [`REACH`].
     fn at(&self, offset: [isize; D]) -> Cell<S, G>;
     /// Cell sizes.
@@ -153,17 +146,17 @@ pub trait Window<const D: usize, R: Real, S: Copy, G: Copy> {
 
     /// The cell with its neighbours along each axis.
     #[inline(always)]
-    fn cross(&self) -> Near<D, R, S, G> {
+    fn star(&self) -> Neighbours<D, R, S, G> {
         let here = self.at([0; D]);
         let (mut lo, mut hi) = ([here; D], [here; D]);
-        unroll!(axis in D => {
+        for_axis!(axis in D => {
             let mut step = [0; D];
             step[axis] = 1;
             hi[axis] = self.at(step);
             step[axis] = -1;
             lo[axis] = self.at(step);
         });
-        Near { here, lo, hi, spacing: *self.spacing() }
+        Neighbours { here, lo, hi, spacing: *self.spacing() }
     }
 }
 
@@ -198,7 +191,7 @@ pub enum Boundary {
     /// The two ends of the axis are joined.
     Periodic,
     /// Nothing lies beyond: what leaves is booked and gone, nothing comes back. The edge of a raster.
-    Nothing,
+    Absorbing,
 }
 
 /// A finite-volume scheme: U -> E_dt(U), written for one cell, one face and one corner.
@@ -207,43 +200,55 @@ pub enum Boundary {
 /// maps ([`crate::time`]).
 pub trait Scheme<const D: usize, R: Real>: Copy + Send + Sync {
     /// The unknowns of a cell.
-    type State: Parts<R>;
+    type State: Components<R>;
     /// The static data of a cell.
-    type Ground: Parts<R>;
+    type Ground: Components<R>;
     /// What follows from a cell alone.
-    type Prime: Copy;
+    type Primitives: Copy;
     /// What a cell offers to its faces and remembers for its update.
-    type Edges: Parts<R>;
+    type FaceStates: Components<R>;
     /// What passes a face, seen from both sides.
-    type Flux: Parts<R>;
+    type Flux: Components<R>;
     /// What is found at a corner of cells; `()` where a scheme needs none.
-    type Corner: Parts<R>;
+    type Corner: Components<R>;
 
     /// Runs end when the state changes slowly enough: the largest change of a step is kept.
-    const DRIFTS: bool = false;
+    const TRACKS_CHANGE: bool = false;
+    /// A fixed step whose Courant number exceeds [`Scheme::max_courant`] is refused. The published schemes of Savage and Hutter's
+    /// model take it, as their papers do.
+    const REFUSES_LONG_STEPS: bool = false;
+
+    /// The Runge-Kutta method that the scheme is stepped by.
+    fn stages(&self) -> Stages;
+    /// The largest Courant number dt * [`Scheme::rate`] at which the scheme is known to be stable.
+    fn max_courant(&self) -> f64;
+    /// The Courant number to take where nobody asks for another one.
+    fn suggested_courant(&self) -> f64 {
+        0.9 * self.max_courant()
+    }
 
     /// Let `work` have the same scheme on another scalar: states and grounds of the same parts in the same order.
-    fn on<L: Real, W: Work<D, L>>(&self, work: W) -> W::Output;
+    fn with_scalar<L: Real, V: SchemeVisitor<D, L>>(&self, visitor: V) -> V::Output;
 
     /// What follows from a cell alone: the place for divisions and roots, which are computed ahead of what waits for them.
-    fn prime(&self, here: &Cell<Self::State, Self::Ground>) -> Self::Prime;
+    fn primitives(&self, here: &Cell<Self::State, Self::Ground>) -> Self::Primitives;
     /// What the cell in the middle of the window offers to its faces and corners.
     fn reconstruct(
         &self,
-        window: &impl Window<D, R, Self::State, Self::Ground>,
-        prime: &Self::Prime,
-    ) -> Self::Edges;
+        stencil: &impl Stencil<D, R, Self::State, Self::Ground>,
+        prime: &Self::Primitives,
+    ) -> Self::FaceStates;
     /// What passes the face between `left` and `right` along `axis`.
-    fn flux(&self, axis: usize, left: &Self::Edges, right: &Self::Edges) -> Self::Flux;
+    fn flux(&self, axis: usize, left: &Self::FaceStates, right: &Self::FaceStates) -> Self::Flux;
     /// What is found at a corner: `around[y][x]` are the cells below and above it, left and right of it; in one dimension
     /// the corner is the face, and both rows are the same.
-    fn corner(&self, around: [[&Self::Edges; 2]; 2]) -> Self::Corner;
+    fn corner(&self, around: [[&Self::FaceStates; 2]; 2]) -> Self::Corner;
     /// The state after `dt` of the cell in the middle of the window; `corners[y][x]` are the cell's lower and upper ones,
     /// left and right.
     fn update(
         &self,
-        window: &impl Window<D, R, Self::State, Self::Ground>,
-        edges: &Self::Edges,
+        stencil: &impl Stencil<D, R, Self::State, Self::Ground>,
+        edges: &Self::FaceStates,
         faces: &[Faces<Self::Flux>; D],
         corners: &[[Self::Corner; 2]; 2],
         dt: R,
@@ -256,49 +261,45 @@ pub trait Scheme<const D: usize, R: Real>: Copy + Send + Sync {
     /// sum over axes of (fastest signal)/dx: the Courant condition is dt times this <= courant; finite in every finite state, for
     /// a run ends where it is not. \[1/time\]
     fn rate(&self, here: &Cell<Self::State, Self::Ground>, spacing: &Spacing<D, R>) -> R;
-    /// The largest Courant number with which a fixed step is taken.
-    fn most_courant(&self) -> f64 {
-        f64::INFINITY
-    }
     /// keep * old + (1 - keep) * new, without undoing an exact stop of `new`.
-    fn average(&self, keep: R, old: &Self::State, new: &Self::State) -> Self::State;
+    fn rk_combine(&self, keep: R, old: &Self::State, new: &Self::State) -> Self::State;
     /// The cell rests by a proof of the scheme (or is dry): with neighbours at rest nothing will change here.
-    fn rests(&self, here: &Cell<Self::State, Self::Ground>) -> R::Mask;
+    fn is_static(&self, here: &Cell<Self::State, Self::Ground>) -> R::Mask;
     /// The cell lies outside the data and holds nothing that is computed.
-    fn outside(&self, ground: &Self::Ground) -> R::Mask;
+    fn is_nodata(&self, ground: &Self::Ground) -> R::Mask;
     /// Under which of the five exits the books put what passes from `here` to `there`, `way` being the one on that side;
     /// none where it stays in the domain.
-    fn exit(&self, _here: &Self::Ground, there: &Self::Ground, _way: usize) -> Option<usize> {
-        R::any(self.outside(there)).then_some(4)
+    fn outlet(&self, _here: &Self::Ground, there: &Self::Ground, _way: usize) -> Option<usize> {
+        R::any(self.is_nodata(there)).then_some(4)
     }
     /// Volume per time and area that is poured on a cell.
-    fn supply(&self, _ground: &Self::Ground) -> R {
+    fn source_rate(&self, _ground: &Self::Ground) -> R {
         R::zero()
     }
     /// Volume per time and face length that the cell on `side` books as leaving it to the other side.
-    fn booked(&self, flux: &Self::Flux, side: Side) -> R;
+    fn outflow(&self, flux: &Self::Flux, side: Side) -> R;
     /// Pull of the mass if it were at rest, as a share of the static bound: up to 1 it stays; 0 where dry and where
     /// nothing holds.
-    fn margin(&self, window: &impl Window<D, R, Self::State, Self::Ground>) -> R;
+    fn yield_ratio(&self, stencil: &impl Stencil<D, R, Self::State, Self::Ground>) -> R;
     /// What the run keeps watch of in a cell.
-    fn watch(&self, here: &Cell<Self::State, Self::Ground>) -> Watch<R>;
+    fn diagnostics(&self, here: &Cell<Self::State, Self::Ground>) -> Diagnostics<R>;
 }
 
 /// Work that is done with a scheme.
-pub trait Work<const D: usize, R: Real> {
+pub trait SchemeVisitor<const D: usize, R: Real> {
     /// What it gives.
     type Output;
     /// Do it.
-    fn with<S: Scheme<D, R>>(self, scheme: &S) -> Self::Output;
+    fn visit<S: Scheme<D, R>>(self, scheme: &S) -> Self::Output;
 }
 
 /// What a run watches in every cell.
 #[derive(Clone, Copy, Debug)]
-pub struct Watch<R> {
+pub struct Diagnostics<R> {
     /// Conserved volume per area.
     pub volume: R,
     /// Squared speed along the bed.
-    pub square: R,
+    pub speed_squared: R,
     /// Kinetic energy per density and area, volume * speed^2 / 2.
     pub energy: R,
     /// Thickness normal to the bed.

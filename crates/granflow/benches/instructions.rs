@@ -1,9 +1,9 @@
-//! Instructions of a cell update, counted by valgrind: the same on a busy machine as on an idle one.
+//! SimdLevel of a cell update, counted by valgrind: the same on a busy machine as on an idle one.
 //!
 //! `.ci/instructions` counts, and fails where a number differs by more than 2 % from `instructions.txt`, up or down;
 //! `.ci/instructions --record` writes that file. valgrind knows no AVX-512: what is counted are the lanes of AVX2.
 
-use granflow::speed::{Extent, SETUPS, Setup};
+use granflow::speed::{Extent, Setup, setups};
 use std::path::Path;
 use std::process::{Command, ExitCode};
 
@@ -34,19 +34,19 @@ fn main() -> Result<ExitCode, Trouble> {
 }
 
 fn setup(name: &str) -> Result<&'static Setup, Trouble> {
-    SETUPS.iter().find(|setup| setup.name == name).ok_or_else(|| format!("there is no setup {name}").into())
+    setups().find(|setup| setup.name == name).ok_or_else(|| format!("there is no setup {name}").into())
 }
 
 /// Take steps on one thread.
 fn take(setup: &Setup, steps: u64) -> Result<(), Trouble> {
     let pool = rayon::ThreadPoolBuilder::new().num_threads(1).build()?;
     Ok(pool.install(|| {
-        let mut load = setup.begin(Extent { cells: CELLS, wet: 1.0 });
+        let mut load = setup.start(Extent { cells: CELLS, wet: 1.0 });
         (0..steps).try_for_each(|_| load.step())
     })?)
 }
 
-/// Instructions that this program executes for so many steps of a setup.
+/// SimdLevel that this program executes for so many steps of a setup.
 fn count(name: &str, steps: u64) -> Result<f64, Trouble> {
     let output = Command::new("valgrind")
         .args(["--tool=callgrind", "--callgrind-out-file=/dev/null"])
@@ -62,7 +62,7 @@ fn count(name: &str, steps: u64) -> Result<f64, Trouble> {
     }
 }
 
-/// Instructions of a cell update.
+/// SimdLevel of a cell update.
 fn cost(name: &str) -> Result<f64, Trouble> {
     let cells = CELLS.pow(setup(name)?.dimensions as u32) as f64;
     Ok((count(name, 2 * STEPS)? - count(name, STEPS)?) / (STEPS as f64 * cells))
@@ -77,7 +77,7 @@ fn tools() -> Result<String, Trouble> {
 
 fn record() -> Result<ExitCode, Trouble> {
     let mut text = format!(
-        "# Instructions of a cell update, AVX2, {CELLS} x {CELLS} cells; written by `.ci/instructions --record`.\n# {}\n",
+        "# SimdLevel of a cell update, AVX2, {CELLS} x {CELLS} cells; written by `.ci/instructions --record`.\n# {}\n",
         tools()?
     );
     for name in COUNTED {

@@ -2,7 +2,7 @@
 //! schemes` prints a table; medians of rounds that are taken in turn, so that other work on the machine falls on all
 //! alike. On grids that fit the second-level cache: formulas are compared here, the memory by `granflow bench`.
 
-use granflow::speed::{Extent, Load, SETUPS, median};
+use granflow::speed::{Extent, Load, median, setups};
 use std::time::Instant;
 
 /// Cells along each axis.
@@ -22,15 +22,15 @@ fn cost(load: &mut dyn Load) -> f64 {
 fn main() {
     let pool = rayon::ThreadPoolBuilder::new().num_threads(1).build().expect("a thread");
     pool.install(|| {
-        let setups = || SETUPS.iter().filter(|setup| setup.dimensions == 2);
+        let planes = || setups().filter(|setup| setup.dimensions == 2);
         let mut loads: Vec<_> =
-            setups().map(|setup| setup.begin(Extent { cells: CELLS, wet: 1.0 })).collect();
+            planes().map(|setup| setup.start(Extent { cells: CELLS, wet: 1.0 })).collect();
         let rounds: Vec<Vec<f64>> =
             (0..ROUNDS).map(|_| loads.iter_mut().map(|load| cost(load.as_mut())).collect()).collect();
         println!("{CELLS} x {CELLS} cells, one thread\n{:18} {:>8}  of balanced", "scheme", "ns/cell");
         let costs = (0..loads.len()).map(|k| median(rounds.iter().map(|round| round[k])));
         let costs: Vec<f64> = costs.collect();
-        for (setup, cost) in setups().zip(&costs) {
+        for (setup, cost) in planes().zip(&costs) {
             println!("{:18} {cost:8.1} {:12.2}", setup.name, cost / costs[0]);
         }
     });

@@ -6,11 +6,13 @@
 mod base64;
 pub mod checkpoint;
 pub mod csv;
+#[cfg(feature = "figures")]
 pub mod figures;
 pub mod frames;
 mod hdf5;
 pub mod ledger;
 pub mod netcdf;
+#[cfg(feature = "geo")]
 pub mod outlines;
 pub mod report;
 pub mod summary;
@@ -79,7 +81,7 @@ impl Error {
         Self::Mismatch { path: path.to_owned(), problem: problem.into() }
     }
 
-    fn invalid(path: &Path, problem: impl Into<String>) -> Self {
+    pub(crate) fn invalid(path: &Path, problem: impl Into<String>) -> Self {
         Self::Invalid { path: path.to_owned(), problem: problem.into() }
     }
 }

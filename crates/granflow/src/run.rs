@@ -1,343 +1,128 @@
-//! A run from its case to its end: steps, books, frames, checkpoints, and why it stopped.
+//! A run that one can hold: stepped, looked into, saved and taken up again, whatever its model, dimension and scheme.
+//!
+//! [`Run`] is object-safe. A case gives one by [`Checked::start`](crate::Checked::start), a builder of
+//! [`build`](crate::build) without any case, and [`Simulated`] makes one of every scheme that the engine can step. [`drive`]
+//! steps a run to one of its [`Ends`] and lets [sinks](crate::sinks) look on.
 
-mod ending;
-pub mod model;
+mod drive;
+mod field_view;
+mod frames;
+mod record;
 mod saved;
-mod series;
-mod writer;
+mod simulated;
 
-use crate::case::{self, Checked, Ends, RunPlan, Until};
-use crate::hadeler_kuttler::scheme::HadelerKuttler;
-use crate::kernels::Kernel;
-use crate::output;
-use crate::output::summary::StopReason;
-use crate::results::{FilesError, Finished, Plane};
-use crate::savage_hutter::Flow;
-use crate::savage_hutter::ground::Bed;
-use crate::setup::{Sand, Scene, SetupError, Visit};
-use crate::simulation::{Failure, Simulation};
-use model::Model;
-use std::path::PathBuf;
-use std::sync::atomic::{AtomicBool, Ordering};
-use std::time::{Duration, Instant};
-use writer::Writer;
+pub use drive::{DriveError, drive};
+pub use field_view::FieldView;
+pub use frames::Frames;
+pub(crate) use frames::after;
+pub use granflow_case::{Ends, Until};
+pub use granflow_engine::simulation::{Failure, Totals};
+pub use record::Record;
+pub use saved::Saved;
+pub use simulated::{CellOf, Field, Numbers, Physics, Simulated, Value};
 
-/// Ledger lines between two frames.
-const LINES: f64 = 10.0;
-/// More threads than this only wait for each other.
-const MOST_THREADS: usize = 1024;
-/// Seconds on the clock between two checkpoints.
-const CHECKPOINT: f64 = 30.0;
-/// The series are joined into `result.nc` again once this many times the last join's cost has passed.
-const JOIN: f64 = 20.0;
-
-/// What is not in the case: where, with how many threads, whether to go on.
-#[derive(Debug, Clone)]
-pub struct Options {
-    /// Folder of the results.
-    pub directory: PathBuf,
-    /// Threads; 0 takes all cores.
-    pub threads: usize,
-    /// Go on from the checkpoint in the folder.
-    pub resume: bool,
-    /// The command, for the history of the result.
-    pub command: String,
-}
-
-/// Where a run is.
-#[derive(Debug, Clone, Copy)]
-pub struct Status {
-    /// Simulated time.
-    pub time: f64,
-    /// Steps done.
-    pub step: u64,
-    /// Cells with a depth, at the last line of `mass.csv`.
-    pub wet_cells: usize,
-    /// Largest speed along the bed.
-    pub max_speed: f64,
-}
-
-/// Why a run did not end as its case says.
-#[derive(Debug, thiserror::Error)]
-pub enum RunError {
-    /// The case or one of its files cannot be used.
-    #[error(transparent)]
-    Setup(#[from] SetupError),
-    /// A file of the results could not be read or written.
-    #[error(transparent)]
-    Output(#[from] output::Error),
-    /// A figure or another file could not be made of the run.
-    #[error(transparent)]
-    Files(#[from] FilesError),
-    /// The computation failed; the state before is saved.
-    #[error("{failure}; everything up to time {time} is saved in {}", saved.display())]
-    Computation {
-        /// What happened.
-        failure: Failure,
-        /// Time of the last saved state.
-        time: f64,
-        /// Where.
-        saved: PathBuf,
-    },
-    /// The threads could not be started.
-    #[error("cannot start the threads: {0}")]
-    Threads(String),
-    /// The folder holds no checkpoint of this case.
-    #[error("cannot resume from {}: {problem}; run without --resume to start anew", directory.display())]
-    Resume {
-        /// The folder.
-        directory: PathBuf,
-        /// What does not fit.
-        problem: String,
-    },
-}
-
-/// Compute a case and write its results, with all files that it asks for; `stop` ends it at the next step, `report` hears of
-/// every step. More can be made of what is returned.
-///
-/// # Errors
-/// [`RunError`]; what was complete before stays complete.
-pub fn run(
-    case: Checked,
-    options: &Options,
-    stop: &AtomicBool,
-    report: &mut (dyn FnMut(&Status) + Send),
-) -> Result<Finished, RunError> {
-    let clock = Instant::now();
-    if options.threads > MOST_THREADS {
-        return Err(RunError::Threads(format!("{} are more than {MOST_THREADS}", options.threads)));
-    }
-    let Checked { run: case, kind } = case;
-    let scene = Scene::load(&case, kind)?;
-    let (film, density) = (scene.film(), scene.density());
-    let pool = rayon::ThreadPoolBuilder::new()
-        .num_threads(options.threads)
-        .build()
-        .map_err(|error| RunError::Threads(error.to_string()))?;
-    // The loop itself is one of the pool's threads: a step then needs no queue, and no allocation.
-    let work = Work { case: &case, film, density, options, stop, report, clock };
-    pool.install(|| scene.simulate(&case, work))
-}
-
-struct Work<'a> {
-    case: &'a RunPlan,
-    film: f64,
-    density: f64,
-    options: &'a Options,
-    stop: &'a AtomicBool,
-    report: &'a mut (dyn FnMut(&Status) + Send),
-    clock: Instant,
-}
-
-impl Visit for Work<'_> {
-    type Output = Result<Finished, RunError>;
-
-    fn visit<const D: usize, S>(self, plane: Plane, simulation: Simulation<D, S>) -> Self::Output
-    where
-        S: Model<D> + Kernel<D, State = Flow<D, f64>>,
-        S::Ground: Bed<D, f64>,
-    {
-        Run::start(self, simulation, plane, None)?.go()
-    }
-
-    fn visit_sand<const D: usize>(
-        self,
-        sand: &Sand<D>,
-        simulation: Simulation<D, HadelerKuttler>,
-    ) -> Self::Output {
-        Run::start(self, simulation, sand.plane(), Some(sand))?.go()
-    }
-}
+pub use crate::model::Maps;
+use crate::model::Plane;
+use granflow_engine::Stepper;
 
 /// A run under way.
-struct Run<'a, 's, const D: usize, S: Kernel<D>> {
-    work: Work<'a>,
-    simulation: Simulation<D, S>,
-    plane: Plane,
-    /// The table and its sources, and until when they flow as they do now.
-    sand: Option<&'s Sand<D>>,
-    pouring: f64,
-    writer: Writer,
-    /// Times of the last frame and of the last ledger line.
-    written: [f64; 2],
-    /// Volume at the start.
-    initial: f64,
-    /// Largest speed, and largest kinetic energy, of the run so far.
-    peak_speed: f64,
-    peak_energy: f64,
-    /// The kinetic energy as it stands, known where the case asks for it.
-    energy: f64,
-    /// Cells with a depth at the last line of the ledger.
-    wet_cells: usize,
-    /// Frames and ledger lines due next.
-    next_frame: f64,
-    next_line: f64,
-    /// Time on the clock spent in steps.
-    stepping: Duration,
-    /// Updates of a cell before this process.
-    updates: u64,
-    /// When the last checkpoint was saved, and when the series were last joined and what it cost \[s\]; `None` while they are
-    /// being joined.
-    saved: Instant,
-    joined: Option<(Instant, f64)>,
-}
+pub trait Run: Send + Sync {
+    /// Where the cells are, and on what; while a run computes the elevation of its bed is held by the engine alone, see
+    /// [`Run::place`].
+    fn plane(&self) -> &Plane;
+    /// What steps it.
+    fn stepper(&self) -> &dyn Stepper;
+    /// What steps it, to be changed.
+    fn stepper_mut(&mut self) -> &mut dyn Stepper;
+    /// Name of the scheme, as the case file writes it.
+    fn scheme(&self) -> &str;
+    /// Volume at the start and the peaks so far.
+    fn record(&self) -> &Record;
+    /// The mass has a speed along its bed; else the largest speed of the totals is another quantity of the model.
+    fn has_speed(&self) -> bool;
+    /// A thinner layer is a film: it is held (units of the thickness).
+    fn film(&self) -> f64;
+    /// Keep the kinetic energy after every step, for an end by energy.
+    fn track_energy(&mut self);
 
-impl<const D: usize, S: Model<D>> Run<'_, '_, D, S> {
-    fn go(mut self) -> Result<Finished, RunError> {
-        let ends = self.work.case.ends;
-        let end = ends.time.unwrap_or(f64::INFINITY);
-        let reason = loop {
-            if let Some(reason) = self.over(&ends, end) {
-                break reason;
-            }
-            // A fixed step is never cut for a frame: the frame waits for the step.
-            let next = self.pour(end);
-            let until = if self.simulation.is_adaptive() { self.next_frame.min(end).min(next) } else { end };
-            if !self.simulation.wanted_step().is_finite() && !until.is_finite() {
-                break StopReason::AtRest;
-            }
-            let before = self.simulation.time();
-            let begin = Instant::now();
-            let advanced = self.simulation.advance(until);
-            self.stepping += begin.elapsed();
-            if let Err(failure) = advanced {
-                return Err(self.failed(failure, before)?);
-            }
-            self.after_step()?;
-        };
-        let due = self.written;
-        if due[0] != self.simulation.time() {
-            self.frame()?;
-        }
-        self.checkpoint(due)?;
-        let options = self.work.options;
-        let (ending, writer) = self.into_ending(reason);
-        let (frames, ledger) = writer.end()?;
-        let finished = ending.finished(frames, ledger.into_entries());
-        finished.write(&options.command)?;
-        Ok(finished)
+    /// One step, not beyond time `until`; returns its length. It is infinite where nothing can move and `until` is
+    /// infinite: the state is final.
+    ///
+    /// # Errors
+    /// [`Failure`]; after [`Failure::NotFinite`] the state is worth nothing, after the others nothing has been done.
+    fn step(&mut self, until: f64) -> Result<f64, Failure>;
+    /// Nothing changes faster than `rate` and no source will change any more, or the state is an equilibrium.
+    fn is_steady(&self, rate: f64) -> bool;
+    /// The state is an equilibrium that was computed without steps.
+    fn is_equilibrium(&self) -> bool {
+        false
     }
 
-    /// Let the sources flow as they will in the next step; the time at which they change.
-    fn pour(&mut self, end: f64) -> f64 {
-        let Some(sand) = self.sand else { return f64::INFINITY };
-        let time = self.simulation.time();
-        let adaptive = self.simulation.is_adaptive();
-        let after = |time: f64| {
-            sand.sources.changes().into_iter().find(|change| *change > time).unwrap_or(f64::INFINITY)
-        };
-        // The middle of the step: second order where a rate varies, and the better side of a change within a fixed step.
-        let half = 0.5 * self.simulation.wanted_step().min(end.min(self.next_frame) - time);
-        if sand.sources.is_moving(time) {
-            let next = after(time);
-            let middle = if adaptive { time + half.min(0.5 * (next - time)) } else { time + half };
-            S::pour(&mut self.simulation, sand, middle);
-            return next;
-        }
-        let now = if adaptive { time } else { time + half };
-        if now >= self.pouring && sand.equilibrium.is_none() {
-            S::pour(&mut self.simulation, sand, now);
-            self.pouring = after(now);
-        }
-        self.pouring
+    /// A field by its name, in the units of the run: a view of the engine's own numbers where they are the field, else
+    /// computed. Names are those of [`Plane::series`].
+    fn field(&self, name: &str) -> Option<FieldView<'_>>;
+    /// As many numbers of field number `field` of [`Plane::series`] as `values` holds, from number `from` on, x fastest.
+    fn fill(&self, field: usize, from: usize, values: &mut [f64]);
+    /// Sums over all cells, taken now and noted in the record.
+    fn take_totals(&mut self) -> Totals;
+    /// Sums over all cells as they stand.
+    fn totals(&self) -> Totals {
+        self.stepper().totals()
     }
 
-    fn after_step(&mut self) -> Result<(), RunError> {
-        let (time, step) = (self.simulation.time(), self.simulation.step());
-        let max_speed = self.simulation.speed();
-        self.peak_speed = self.peak_speed.max(max_speed);
-        if self.work.case.ends.kinetic_energy.is_some() {
-            self.simulation.take_sums();
-            self.energy = self.simulation.totals().energy;
-            self.peak_energy = self.peak_energy.max(self.energy);
-        }
-        (self.work.report)(&Status { time, step, wet_cells: self.wet_cells, max_speed });
-        let by_steps = match self.work.case.frames {
-            case::Frames::Steps(every) => step % every == 0,
-            _ => false,
-        };
-        let half = if self.simulation.is_adaptive() { 0.0 } else { 0.5 * self.simulation.wanted_step() };
-        self.writer.check()?;
-        if by_steps || time + half >= self.next_frame {
-            self.frame()?;
-            self.schedule();
-            self.join()?;
-        } else if time + half >= self.next_line {
-            self.line()?;
-            let interval = self.interval().unwrap_or(f64::INFINITY) / LINES;
-            while self.next_line <= time + half {
-                self.next_line += interval;
-            }
-        }
-        if self.saved.elapsed().as_secs_f64() > CHECKPOINT {
-            self.checkpoint(self.written)?;
-        }
+    /// The maps of the state as it stands, beyond peaks and times.
+    fn maps(&mut self) -> Maps;
+    /// The maps of peaks and times so far.
+    fn peaks(&self) -> Maps;
+    /// The maps of peaks and times; each map is copied when all else and those before are given back.
+    fn into_peaks(self: Box<Self>) -> Maps;
+    /// The plane with the elevation of its bed.
+    fn place(&self) -> Plane;
+    /// The numbers of a summary that only this model has.
+    fn numbers(&self) -> Numbers;
+
+    /// The run as it stands, to be taken up again by [`Run::restore`]; nothing is copied.
+    fn save(&self) -> Saved<'_>;
+    /// Go on from what [`Run::save`] gave.
+    ///
+    /// # Errors
+    /// What does not fit, in words.
+    fn restore(&mut self, saved: Saved<'static>) -> Result<(), String>;
+
+    /// Time reached.
+    fn time(&self) -> f64 {
+        self.stepper().time()
+    }
+    /// Steps done.
+    fn steps(&self) -> u64 {
+        self.stepper().steps()
+    }
+    /// Every cell rests by the scheme's proof and the last step changed nothing, or nothing could send a signal: nothing will
+    /// ever move.
+    fn at_rest(&self) -> bool {
+        self.stepper().at_rest() || self.stepper().rate() == 0.0
+    }
+    /// Step until time `time`.
+    ///
+    /// # Errors
+    /// [`Failure`] of the first step that cannot be taken.
+    fn until(&mut self, time: f64) -> Result<(), Failure> {
+        while self.time() < time && self.step(time)?.is_finite() {}
         Ok(())
     }
-
-    /// Why the run is over, if it is.
-    fn over(&self, ends: &Ends, end: f64) -> Option<StopReason> {
-        let simulation = &self.simulation;
-        if self.work.stop.load(Ordering::Relaxed) {
-            return Some(StopReason::Interrupted);
-        }
-        let steady = match ends.until {
-            Some(Until::Steady { rate }) => self.is_steady(rate),
-            Some(Until::Equilibrium) => true,
-            _ => false,
-        };
-        if steady {
-            return Some(StopReason::Steady);
-        }
-        if let Some(Until::Rest { speed }) = ends.until {
-            // Where no cell could send a signal (nothing but films), nothing will ever move.
-            if simulation.at_rest() || simulation.rate() == 0.0 {
-                return Some(StopReason::AtRest);
-            }
-            if let Some(limit) = speed
-                && simulation.step() > 1
-                && simulation.speed() < limit
-            {
-                return Some(StopReason::BelowSpeed);
-            }
-        }
-        if let Some(share) = ends.kinetic_energy
-            && simulation.step() > 0
-            && self.peak_energy > 0.0
-            && self.energy < share * self.peak_energy
-        {
-            return Some(StopReason::KineticEnergy);
-        }
-        if simulation.time() >= end {
-            return Some(StopReason::EndTime);
-        }
-        (ends.steps.is_some_and(|steps| simulation.step() >= steps)).then_some(StopReason::Steps)
-    }
-
-    /// Nothing changes faster than `rate`, and no source will change any more.
-    fn is_steady(&self, rate: f64) -> bool {
-        let Some(sand) = self.sand else { return false };
-        let time = self.simulation.time();
-        let changes =
-            sand.sources.is_moving(time) || sand.sources.changes().iter().any(|change| *change > time);
-        let [u, v, _] = self.simulation.drift();
-        !changes && u < rate && v < rate
-    }
-
-    /// Save what there is before the failed step, which began at `time`, is reported.
-    fn failed(self, failure: Failure, time: f64) -> Result<RunError, RunError> {
-        // The state after the failed step is worth nothing; the frames and the last checkpoint are.
-        let options = self.work.options;
-        let (ending, writer) = self.into_ending(StopReason::Interrupted);
-        let (frames, ledger) = writer.end()?;
-        let finished = ending.finished(frames, ledger.into_entries());
-        finished.write_result(&options.command)?;
-        let time = finished.frames.times().last().copied().unwrap_or(time);
-        Ok(RunError::Computation { failure, time, saved: finished.result() })
+    /// Step until everything is at rest, or to time `limit`; says whether it is at rest.
+    ///
+    /// # Errors
+    /// [`Failure`] of the first step that cannot be taken.
+    fn to_rest(&mut self, limit: f64) -> Result<bool, Failure> {
+        while !self.at_rest() && self.time() < limit && self.step(limit)?.is_finite() {}
+        Ok(self.at_rest())
     }
 }
 
-/// part/whole, and 0 of nothing.
-fn relative(part: f64, whole: f64) -> f64 {
-    if whole == 0.0 { 0.0 } else { part / whole }
+impl dyn Run + '_ {
+    /// The run at multiples of `every`, from its present state on: see [`Frames`].
+    pub fn frames(&mut self, every: f64) -> Frames<'_> {
+        Frames::new(self, every)
+    }
 }

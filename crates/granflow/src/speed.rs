@@ -7,12 +7,18 @@ mod setups;
 mod triad;
 
 pub use measure::{SpeedError, Spell, median, spells};
-pub use setups::{Extent, SETUPS, Setup};
+pub(crate) use setups::{COURANT, grid};
+pub use setups::{Extent, Setup};
 pub use triad::Triad;
 
 use crate::kernels::Kernel;
-use crate::simulation::{Failure, Instructions, Simulation, Traffic};
+use crate::simulation::{Failure, SimdLevel, Simulation, Traffic};
 use granflow_engine::Field;
+
+/// All runs to measure by, of all models.
+pub fn setups() -> impl Iterator<Item = &'static Setup> + Clone {
+    crate::registry::setups()
+}
 
 /// A run to be measured, of whatever scheme.
 pub trait Load: Send {
@@ -33,11 +39,11 @@ pub trait Load: Send {
     /// What a step of every cell asks of the memory.
     fn traffic(&self) -> Traffic;
     /// Compute with these instructions.
-    fn use_instructions(&mut self, instructions: Instructions);
+    fn use_simd(&mut self, instructions: SimdLevel);
 }
 
 /// A run and how it began.
-struct Begun<const D: usize, S: Kernel<D>> {
+pub(crate) struct Begun<const D: usize, S: Kernel<D>> {
     run: Simulation<D, S>,
     clock: Vec<f64>,
     start: Field,
@@ -47,7 +53,7 @@ struct Begun<const D: usize, S: Kernel<D>> {
 }
 
 impl<const D: usize, S: Kernel<D>> Begun<D, S> {
-    fn new(run: Simulation<D, S>, all: bool) -> Self {
+    pub fn new(run: Simulation<D, S>, all: bool) -> Self {
         let (clock, start) = (run.clock(), run.arrays().clone());
         let mut begun = Begun { run, clock, start, left: 0, all };
         begun.left = begun.whole();
@@ -85,14 +91,15 @@ impl<const D: usize, S: Kernel<D>> Load for Begun<D, S> {
     fn traffic(&self) -> Traffic {
         self.run.traffic()
     }
-    fn use_instructions(&mut self, instructions: Instructions) {
-        self.run.use_instructions(instructions);
+    fn use_simd(&mut self, instructions: SimdLevel) {
+        self.run.use_simd(instructions);
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::models::savage_hutter::run::speed as avalanches;
 
     fn whole(cells: usize) -> Extent {
         Extent { cells, wet: 1.0 }
@@ -100,9 +107,9 @@ mod tests {
 
     #[test]
     fn every_setup_runs_until_its_restart_and_again() {
-        for setup in SETUPS {
+        for setup in setups() {
             for wet in [1.0, 0.3].into_iter().filter(|wet| *wet == 1.0 || setup.dry) {
-                let mut load = setup.begin(Extent { cells: 40, wet });
+                let mut load = setup.start(Extent { cells: 40, wet });
                 assert_eq!(load.cells(), 40_usize.pow(setup.dimensions as u32), "{}", setup.name);
                 for _ in 0..3 {
                     while load.steps_left() > 0 {
@@ -120,9 +127,9 @@ mod tests {
                 load.step().unwrap();
             }
             let totals = load.run.totals();
-            let (counts, moved) = ((totals.moving, totals.wet), load.run.arrays().parts.clone());
+            let (counts, moved) = ((totals.moving, totals.wet), load.run.arrays().components().to_vec());
             load.restart().unwrap();
-            assert_eq!(load.run.arrays().parts, load.start.parts);
+            assert_eq!(load.run.arrays().components(), load.start.components());
             (counts, moved)
         };
         let first = go();
@@ -132,13 +139,13 @@ mod tests {
 
     #[test]
     fn every_cell_moves_until_the_restart_and_the_restart_is_the_start() {
-        all_move_and_begin_anew(setups::on_plane::<2>(false, whole(40)));
-        all_move_and_begin_anew(setups::on_terrain(false, whole(40)));
+        all_move_and_begin_anew(avalanches::on_plane::<2>(false, whole(40)));
+        all_move_and_begin_anew(avalanches::on_terrain(false, whole(40)));
     }
 
     #[test]
     fn what_is_dry_sleeps() {
-        let mut load = setups::on_plane::<2>(false, Extent { cells: 400, wet: 0.25 });
+        let mut load = avalanches::on_plane::<2>(false, Extent { cells: 400, wet: 0.25 });
         load.restart().unwrap();
         assert_eq!(
             load.run.totals().wet,
@@ -154,8 +161,8 @@ mod tests {
 
     #[test]
     fn the_memory_model_counts_the_numbers_of_the_types() {
-        let named = |name: &str| SETUPS.iter().find(|setup| setup.name == name).expect("a setup");
-        let traffic = |name: &str| named(name).begin(whole(200)).traffic();
+        let named = |name: &str| setups().find(|setup| setup.name == name).expect("a setup");
+        let traffic = |name: &str| named(name).start(whole(200)).traffic();
         // Three numbers in two dimensions, two in one, two of a pile; a plane is one ground.
         assert_eq!(traffic("balanced"), Traffic { read: 24.0, written: 24.0, allocated: 24.0 });
         assert_eq!(traffic("balanced_1d"), Traffic { read: 16.0, written: 16.0, allocated: 16.0 });

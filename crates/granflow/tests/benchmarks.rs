@@ -208,7 +208,7 @@ fn down_the_terrain(
     exact: impl Fn(f64, f64) -> Flow1 + Sync,
 ) -> f64 {
     let cos = zeta.cos();
-    let grid = line(from * cos, to * cos, cells, Boundary::Nothing);
+    let grid = line(from * cos, to * cos, cells, Boundary::Absorbing);
     let grounds = terrain(&grid, slope(zeta));
     let mut run = run(order, (mu, 1e-9), order.courant(), grid, &grounds, |[x], _| {
         let Flow1 { h, u } = exact(x / cos, 0.0);
@@ -319,7 +319,7 @@ fn flat_dam(order: Order, cells: usize) -> f64 {
 
 fn thacker(order: Order, cells: usize) -> f64 {
     let exact = ThackerParaboloid::new(GRAVITY, 1.0, 0.5, 1e-4).expect("a lake");
-    let sheet = grid([cells; 2], [-2.0; 2], 4.0 / cells as f64, Boundary::Nothing);
+    let sheet = grid([cells; 2], [-2.0; 2], 4.0 / cells as f64, Boundary::Absorbing);
     let bend = 2e-4;
     let grounds = terrain(&sheet, |[x, y]| {
         Some(Surface { z: exact.bed(x, y), slope: [bend * x, bend * y], bent: [[bend, 0.0], [0.0, bend]] })
@@ -482,7 +482,7 @@ fn a_slab_on_terrain_stops_at_the_exact_time() {
     for order in ORDERS {
         for angle in [0.0, 35.0_f64] {
             let (sin, cos) = angle.to_radians().sin_cos();
-            let sheet = grid([121, 121], [0.0; 2], 2.0, Boundary::Nothing);
+            let sheet = grid([121, 121], [0.0; 2], 2.0, Boundary::Absorbing);
             // A slope that a grid keeps as it is.
             let fall = [-steep * cos, -steep * sin].map(|slope| f64::from(slope as f32));
             let tan = fall[0].hypot(fall[1]);
@@ -500,7 +500,7 @@ fn a_slab_on_terrain_stops_at_the_exact_time() {
             alone(|| {
                 while run.time() < 1.2 * exact.stopping_time() {
                     steps(&mut run, 1);
-                    let v = run.watch([60, 60]).square.sqrt();
+                    let v = run.diagnostics([60, 60]).speed_squared.sqrt();
                     let right = exact.velocity(run.time());
                     assert!(
                         (v - right).abs() < 1e-10 || ends_early(order, v, right, lost_per_step),

@@ -5,17 +5,15 @@ mod support;
 use granflow::hadeler_kuttler::scheme::{ADAPTIVE, FIRST_ORDER, SECOND_ORDER};
 use granflow::hadeler_kuttler::table::Table;
 use granflow::kernels::Kernel;
+use granflow::models::hadeler_kuttler::run::site::Site;
 use granflow::savage_hutter::Flow;
 use granflow::savage_hutter::balanced::Balanced;
 use granflow::savage_hutter::friction::{Coulomb, Law};
 use granflow::savage_hutter::ground::{Bed, Chute, Terrain};
-use granflow::savage_hutter::kinetic::{
-    Kinetic, VERFAHREN_1, VERFAHREN_2, VERFAHREN_3, VERFAHREN_4, VERFAHREN_5,
-};
-use granflow::scheme::{Boundary, Cell, Faces, Parts, Spacing, Window};
-use granflow::simulation::{Failure, Instructions, Simulation, StepSize};
-use granflow::site::Site;
-use granflow::time::{EULER, SSP_RK2, Stages};
+use granflow::savage_hutter::kinetic::{VERFAHREN_1, VERFAHREN_2, VERFAHREN_3, VERFAHREN_4, VERFAHREN_5};
+use granflow::scheme::{Boundary, Cell, Components, Faces, Spacing, Stencil};
+use granflow::simulation::{Failure, SimdLevel, Simulation, StepSize};
+use granflow_engine::Field;
 use proptest::prelude::*;
 use support::{Dice, ORDERS, Order, Surface, alone, grid, lost, plane, run, states, steps, terrain};
 
@@ -25,7 +23,6 @@ trait Property<const D: usize> {
         &self,
         name: &str,
         scheme: impl Fn() -> S,
-        stages: Stages,
     );
 }
 
@@ -40,15 +37,15 @@ fn every<const D: usize>(mu: f64, property: &impl Property<D>) {
         ("verfahren_5", VERFAHREN_5),
     ];
     for (name, scheme) in published {
-        property.check(name, || Kinetic { friction, ..scheme }, EULER);
+        property.check(name, || scheme.with(friction));
     }
     default_schemes(mu, property);
 }
 
 fn default_schemes<const D: usize>(mu: f64, property: &impl Property<D>) {
     let friction = Law::Coulomb(Coulomb { mu });
-    property.check::<Balanced<_, _>>("balanced", || Balanced::first(friction, 1e-6), EULER);
-    property.check::<Balanced<_, _>>("balanced_2", || Balanced::second(friction, 1e-6), SSP_RK2);
+    property.check::<Balanced<_, _>>("balanced", || Balanced::first(friction, 1e-6));
+    property.check::<Balanced<_, _>>("balanced_2", || Balanced::second(friction, 1e-6));
 }
 
 /// Random depths and velocities; every fifth cell at rest, every seventh dry if asked.
@@ -79,7 +76,7 @@ struct Alike<const D: usize, S, G> {
     spacing: Spacing<D, f64>,
 }
 
-impl<const D: usize, S: Copy, G: Copy> Window<D, f64, S, G> for Alike<D, S, G> {
+impl<const D: usize, S: Copy, G: Copy> Stencil<D, f64, S, G> for Alike<D, S, G> {
     fn at(&self, _offset: [isize; D]) -> Cell<S, G> {
         self.here
     }
@@ -100,7 +97,7 @@ impl Consistency {
     ) -> Flow<D, f64> {
         let spacing = Spacing::new([1.0; D]);
         let around = |state| Alike { here: Cell { state, ground }, spacing };
-        let edges = |state| scheme.reconstruct(&around(state), &scheme.prime(&Cell { state, ground }));
+        let edges = |state| scheme.reconstruct(&around(state), &scheme.primitives(&Cell { state, ground }));
         let (wet, dry) = (edges(state), edges(Flow::still(0.0)));
         let corners = [[scheme.corner([[&wet; 2]; 2]); 2]; 2];
         let idle: [Faces<S::Flux>; D] =
@@ -142,7 +139,6 @@ impl<const D: usize> Property<D> for Consistency {
         &self,
         name: &str,
         scheme: impl Fn() -> S,
-        _: Stages,
     ) {
         Self::compare(name, &scheme(), plane([0.0; D], 0.4));
     }
@@ -153,7 +149,7 @@ fn flux_of_equal_states_is_the_flux_of_the_equation() {
     every::<1>(0.0, &Consistency);
     every::<2>(0.0, &Consistency);
     let slopes = |z: f64, slope| {
-        let cell = grid([1, 1], [0.0, 0.0], 1.0, Boundary::Nothing);
+        let cell = grid([1, 1], [0.0, 0.0], 1.0, Boundary::Absorbing);
         terrain(&cell, |_| Some(Surface { z, slope, bent: [[0.0; 2]; 2] }))[0]
     };
     for order in ORDERS {
@@ -173,7 +169,6 @@ impl<const D: usize> Property<D> for Mirror {
         &self,
         name: &str,
         scheme: impl Fn() -> S,
-        stages: Stages,
     ) {
         let axis = self.0;
         let grid = grid(std::array::from_fn(|k| [37, 23][k]), [0.0; D], 0.05, Boundary::Open);
@@ -186,15 +181,10 @@ impl<const D: usize> Property<D> for Mirror {
         let ground = plane(tilt, 0.4);
         let mirrored = scheme().mirror_ground(axis, &ground);
         let step = StepSize::Fixed(0.002);
-        let mut one = Simulation::new(scheme(), grid, stages, step, |_| ground, &start);
-        let mut two = Simulation::new(
-            scheme(),
-            grid,
-            stages,
-            step,
-            |_| mirrored,
-            |index| start(image(index)).mirror(axis),
-        );
+        let mut one = Simulation::new(scheme(), grid, step, |_| ground, &start).unwrap();
+        let mut two =
+            Simulation::new(scheme(), grid, step, |_| mirrored, |index| start(image(index)).mirror(axis))
+                .unwrap();
         for run in [&mut one, &mut two] {
             alone(|| steps(run, 50));
         }
@@ -220,7 +210,6 @@ impl Property<2> for Transpose {
         &self,
         name: &str,
         scheme: impl Fn() -> S,
-        stages: Stages,
     ) {
         let turned = |[x, y]: [usize; 2]| [y, x];
         let swap = |s: Flow<2, f64>| Flow { h: s.h, q: [s.q[1], s.q[0]] };
@@ -228,15 +217,15 @@ impl Property<2> for Transpose {
         let high = grid([23, 37], [0.0; 2], 0.05, Boundary::Open);
         let start = rough::<2>(12, stays_positive(name));
         let step = StepSize::Fixed(0.002);
-        let mut one = Simulation::new(scheme(), wide, stages, step, |_| plane([0.21, -0.13], 0.4), &start);
+        let mut one = Simulation::new(scheme(), wide, step, |_| plane([0.21, -0.13], 0.4), &start).unwrap();
         let mut two = Simulation::new(
             scheme(),
             high,
-            stages,
             step,
             |_| plane([-0.13, 0.21], 0.4),
             |index| swap(start(turned(index))),
-        );
+        )
+        .unwrap();
         for run in [&mut one, &mut two] {
             alone(|| steps(run, 50));
         }
@@ -277,7 +266,7 @@ impl Embedded {
         }
     }
 
-    fn pair<S, T>(&self, name: &str, one: S, two: T, stages: Stages)
+    fn pair<S, T>(&self, name: &str, one: S, two: T)
     where
         S: Kernel<1, State = Flow<1, f64>, Ground = Chute<1, f64>>,
         T: Kernel<2, State = Flow<2, f64>, Ground = Chute<2, f64>>,
@@ -299,8 +288,8 @@ impl Embedded {
         };
         self.compare(
             name,
-            Simulation::new(one, line, stages, step, |_| plane([0.21], 0.4), &start),
-            Simulation::new(two, sheet, stages, step, |_| plane(tilt, 0.4), spread),
+            Simulation::new(one, line, step, |_| plane([0.21], 0.4), &start).unwrap(),
+            Simulation::new(two, sheet, step, |_| plane(tilt, 0.4), spread).unwrap(),
         );
     }
 }
@@ -317,12 +306,12 @@ fn two_dimensions_of_one_dimensional_data_are_one_dimension() {
             ("verfahren_4", VERFAHREN_4),
             ("verfahren_5", VERFAHREN_5),
         ] {
-            let scheme = Kinetic { friction, ..scheme };
-            embedded.pair(name, scheme, scheme, EULER);
+            let scheme = scheme.with(friction);
+            embedded.pair(name, scheme, scheme);
         }
         for order in ORDERS {
             let name = if order == Order::First { "balanced" } else { "balanced_2" };
-            embedded.pair(name, order.scheme(0.3, 1e-6), order.scheme(0.3, 1e-6), order.stages());
+            embedded.pair(name, order.scheme(0.3, 1e-6), order.scheme(0.3, 1e-6));
         }
     }
 }
@@ -408,10 +397,10 @@ proptest! {
             let start = wild::<1>(seed, fast);
             let least = match order {
                 None => {
-                    let scheme = Kinetic { friction: Coulomb { mu }, ..VERFAHREN_1 };
+                    let scheme = VERFAHREN_1.with(Coulomb { mu });
                     let mut run = Simulation::new(
-                        scheme, line, EULER, StepSize::Courant(1.0), |_| plane([tilt], 0.4), |index| start(line.centre(index)),
-                    );
+                        scheme, line, StepSize::Courant(1.0), |_| plane([tilt], 0.4), |index| start(line.centre(index)),
+                    ).unwrap();
                     alone(|| lowest(&mut run, 60))
                 }
                 Some(order) => {
@@ -431,9 +420,9 @@ proptest! {
         let sheet = grid([14, 11], [0.0; 2], 0.1, ends(kind));
         let grounds = vec![plane([x, y], 0.4); sheet.count()];
         let mut published = Simulation::new(
-            Kinetic { friction: Coulomb { mu }, ..VERFAHREN_1 },
-            sheet, EULER, StepSize::Courant(1.0), |_| grounds[0], |index| wild(seed, fast)(sheet.centre(index)),
-        );
+            VERFAHREN_1.with(Coulomb { mu }),
+            sheet, StepSize::Courant(1.0), |_| grounds[0], |index| wild(seed, fast)(sheet.centre(index)),
+        ).unwrap();
         let least = alone(|| lowest(&mut published, 30));
         prop_assert!(least >= 0.0, "verfahren_1: {:e}", least);
         for order in ORDERS {
@@ -472,8 +461,14 @@ fn schemes_of_the_mean_depth_lose_positivity_on_dry_ground() {
             10..20 => Flow { h: 1.0, q: [1.0] },
             _ => Flow::still(0.0),
         };
-        let mut run =
-            Simulation::new(scheme, line, EULER, StepSize::Courant(1.0), |_| plane([0.0], 0.4), start);
+        let mut run = Simulation::new(
+            scheme.with(Coulomb { mu: 0.0 }),
+            line,
+            StepSize::Courant(1.0),
+            |_| plane([0.0], 0.4),
+            start,
+        )
+        .unwrap();
         let least = alone(|| {
             let mut least: f64 = 0.0;
             for _ in 0..10 {
@@ -496,7 +491,6 @@ impl<const D: usize> Property<D> for Mass {
         &self,
         name: &str,
         scheme: impl Fn() -> S,
-        stages: Stages,
     ) {
         if name == "verfahren_5" {
             return; // Erratum 5: it chooses F or F~ per cell.
@@ -505,7 +499,7 @@ impl<const D: usize> Property<D> for Mass {
         let tilt: [f64; D] = std::array::from_fn(|k| [0.3, -0.2][k]);
         let start = rough::<D>(17, stays_positive(name));
         let mut run =
-            Simulation::new(scheme(), grid, stages, StepSize::Fixed(0.001), |_| plane(tilt, 0.4), start);
+            Simulation::new(scheme(), grid, StepSize::Fixed(0.001), |_| plane(tilt, 0.4), start).unwrap();
         let before = run.totals().volume;
         alone(|| steps(&mut run, 300));
         let gone: f64 = run.out().iter().sum();
@@ -527,7 +521,7 @@ fn mass_is_kept_and_what_leaves_is_booked() {
 
 /// A pile on bumpy ground that runs out and stops; nodata in one corner, and room beside it for tiles to sleep in.
 fn avalanche(order: Order) -> support::Run<2, Terrain<2, f64>> {
-    let sheet = grid([83, 125], [0.0, -64.0], 2.0, Boundary::Nothing);
+    let sheet = grid([83, 125], [0.0, -64.0], 2.0, Boundary::Absorbing);
     let bed = bumps(5);
     let grounds = terrain(&sheet, |[x, y]| {
         if x + y > 250.0 {
@@ -570,16 +564,16 @@ fn finds_what_is_no_number<const D: usize, S: Kernel<D>>(
     build: impl Fn() -> Simulation<D, S>,
     cell: [usize; D],
 ) {
-    for instructions in [Instructions::Scalar, Instructions::Narrow, Instructions::Widest] {
-        for (part, bad) in (0..<S::State as Parts<f64>>::COUNT)
+    for instructions in [SimdLevel::Scalar, SimdLevel::Avx2, SimdLevel::Best] {
+        for (part, bad) in (0..<S::State as Components<f64>>::COUNT)
             .flat_map(|part| [f64::NAN, f64::INFINITY].map(|bad| (part, bad)))
         {
             let mut run = build();
-            run.use_instructions(instructions);
+            run.use_simd(instructions);
             assert!(run.advance(f64::INFINITY).is_ok(), "{name}");
-            let mut arrays = run.arrays().clone();
-            arrays.parts[part][run.place(cell)] = bad;
-            run.restore(&run.clock(), arrays);
+            let mut arrays = run.arrays().components().to_vec();
+            arrays[part][run.place(cell)] = bad;
+            run.restore(&run.clock(), Field::of(arrays));
             let failure = run.advance(f64::INFINITY).expect_err(name);
             // No step is short enough for a speed that is infinite from the start.
             let found = matches!(failure, Failure::NotFinite { .. }) || bad == f64::INFINITY;
@@ -595,8 +589,8 @@ fn a_run_ends_where_the_state_is_no_number() {
         let ground = |_| plane([0.1, 0.0], 0.4);
         for order in ORDERS {
             let begin = || {
-                let (scheme, stages) = (order.scheme::<Chute<2, f64>>(0.3, 1e-6), order.stages());
-                Simulation::new(scheme, sheet, stages, StepSize::Fixed(1e-4), ground, rough(3, false))
+                let scheme = order.scheme::<Chute<2, f64>>(0.3, 1e-6);
+                Simulation::new(scheme, sheet, StepSize::Fixed(1e-4), ground, rough(3, false)).unwrap()
             };
             finds_what_is_no_number(&format!("balanced, {order:?}"), begin, [17, 23]);
         }
@@ -605,7 +599,7 @@ fn a_run_ends_where_the_state_is_no_number() {
         for scheme in [FIRST_ORDER, SECOND_ORDER, ADAPTIVE] {
             let begin = || {
                 let (nodes, cells) = (vec![0.0; 51 * 41], vec![0.1; 50 * 40]);
-                site.simulation(scheme, StepSize::Fixed(1e-4), &vec![0.5; 50 * 40], (&nodes, &cells))
+                site.simulation(scheme, StepSize::Fixed(1e-4), &vec![0.5; 50 * 40], (&nodes, &cells)).unwrap()
             };
             finds_what_is_no_number(&format!("{scheme:?}"), begin, [17, 23]);
         }

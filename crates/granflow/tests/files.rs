@@ -1,11 +1,11 @@
 //! One small run on a mountain and one on a chute: every kind of file opens and holds what the run left.
 
-use granflow::Disk;
-use granflow::case::Case;
+use granflow::Case;
 use granflow::output::summary::StopReason;
 use granflow::raster::Raster;
 use granflow::results::{FilesError, Finished, Story};
-use granflow::run::{Options, RunError, Status, run};
+use granflow::run::Run;
+use granflow::session::{Options, RunError};
 use std::fmt::Write as _;
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -23,11 +23,11 @@ fn begin(
     case: &Case,
     out: &Path,
     resume: bool,
-    stop: &mut (dyn FnMut(&Status) -> bool + Send),
+    stop: &mut (dyn FnMut(&dyn Run) -> bool + Send),
 ) -> Result<Finished, RunError> {
     let options = Options { directory: out.to_owned(), threads: 2, resume, command: "test".to_owned() };
     let stopped = AtomicBool::new(false);
-    run(case.check(&Disk).unwrap(), &options, &stopped, &mut |status| {
+    case.check().unwrap().compute(&options, &stopped, &mut |status| {
         if stop(status) {
             stopped.store(true, Ordering::Relaxed);
         }
@@ -165,23 +165,23 @@ fn a_full_disk_ends_the_run_and_nothing_complete_is_lost() {
     let [whole, parts] = ["whole", "parts"].map(|name| folder.path().join(name));
     let unbroken = begin(&case, &whole, false, &mut |_| false).unwrap().summary;
     let half = unbroken.steps / 2;
-    let interrupted = begin(&case, &parts, false, &mut |status| status.step == half / 2).unwrap();
+    let interrupted = begin(&case, &parts, false, &mut |status| status.steps() == half / 2).unwrap();
     assert_eq!(interrupted.summary.stop_reason, StopReason::Interrupted);
 
     let (ledger, aside) = (parts.join("mass.csv"), parts.join("aside.csv"));
     let mut last = 0;
     let failed = begin(&case, &parts, true, &mut |status| {
-        if status.step == half {
+        if status.steps() == half {
             // In one go, for the writer may open it at any instant.
             let full = parts.join("full");
             fs::hard_link(&ledger, &aside).unwrap();
             std::os::unix::fs::symlink("/dev/full", &full).unwrap();
             fs::rename(&full, &ledger).unwrap();
-        } else if status.step > half {
+        } else if status.steps() > half {
             // These steps take microseconds: leave the thread that writes the time to come upon it.
             std::thread::sleep(Duration::from_millis(100));
         }
-        last = status.step;
+        last = status.steps();
         false
     });
     let message = failed.unwrap_err().to_string();

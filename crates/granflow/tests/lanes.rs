@@ -9,26 +9,23 @@ use granflow::kernels::Kernel;
 use granflow::savage_hutter::Flow;
 use granflow::savage_hutter::balanced::Balanced;
 use granflow::savage_hutter::friction::{Coulomb, Law, SamosAt, Voellmy};
-use granflow::savage_hutter::kinetic::{
-    Kinetic, VERFAHREN_1, VERFAHREN_2, VERFAHREN_3, VERFAHREN_4, VERFAHREN_5,
-};
-use granflow::scheme::{Boundary, Parts};
-use granflow::simulation::{Instructions, Simulation, StepSize};
-use granflow::time::{EULER, SSP_RK2};
+use granflow::savage_hutter::kinetic::{VERFAHREN_1, VERFAHREN_2, VERFAHREN_3, VERFAHREN_4, VERFAHREN_5};
+use granflow::scheme::{Boundary, Components};
+use granflow::simulation::{SimdLevel, Simulation, StepSize};
 use support::{Dice, Surface, alone, grid, plane, terrain};
 
 /// Every number that a run shows, as bits.
 fn bits<const D: usize, S: Kernel<D>>(run: &Simulation<D, S>) -> Vec<u64> {
     let mut numbers = Vec::new();
     for cell in run.collect(|cell| cell.state) {
-        cell.scatter(|_, value| numbers.push(value));
+        cell.store(|_, value| numbers.push(value));
     }
     let totals = run.totals();
     numbers.extend([totals.volume, totals.film, totals.speed, totals.energy, run.rate()]);
     numbers.extend([totals.wet, totals.moving].map(|count| count as f64));
     numbers.extend(run.out());
     numbers.extend(run.drift());
-    for (_, map) in run.maps.as_ref().expect("kept from the start").named() {
+    for (_, map) in run.maps().expect("kept from the start").named() {
         numbers.extend(map.iter().copied().map(f64::from));
     }
     numbers.iter().map(|number| number.to_bits()).collect()
@@ -40,9 +37,9 @@ fn compare<const D: usize, S: Kernel<D>>(name: &str, build: impl Fn() -> Simulat
         let mut scalar = build();
         let mut narrow = build();
         let mut widest = build();
-        narrow.use_instructions(Instructions::Narrow);
-        widest.use_instructions(Instructions::Widest);
-        scalar.use_instructions(Instructions::Scalar);
+        narrow.use_simd(SimdLevel::Avx2);
+        widest.use_simd(SimdLevel::Best);
+        scalar.use_simd(SimdLevel::Scalar);
         for step in 0..12 {
             for run in [&mut scalar, &mut narrow, &mut widest] {
                 if step == 0 {
@@ -89,23 +86,21 @@ fn rough<const D: usize>(
 fn on_planes<const D: usize>(cells: [usize; D], ends: Boundary) {
     let sheet = grid(cells, [0.0; D], 0.05, ends);
     let tilt = std::array::from_fn(|k| [0.21, -0.13][k]);
-    let run = |scheme, stages, step| {
-        Simulation::new(scheme, sheet, stages, step, |_| plane::<D>(tilt, 0.4), rough(3, cells, true))
+    let run = |scheme, step| {
+        Simulation::new(scheme, sheet, step, |_| plane::<D>(tilt, 0.4), rough(3, cells, true)).unwrap()
     };
     let friction = Coulomb { mu: 0.3 };
-    compare("balanced", || run(Balanced::first(Law::Coulomb(friction), 1e-6), EULER, StepSize::Courant(0.9)));
-    compare("balanced_2", || {
-        run(Balanced::second(Law::Coulomb(friction), 1e-6), SSP_RK2, StepSize::Courant(0.45))
-    });
+    compare("balanced", || run(Balanced::first(Law::Coulomb(friction), 1e-6), StepSize::Courant(0.9)));
+    compare("balanced_2", || run(Balanced::second(Law::Coulomb(friction), 1e-6), StepSize::Courant(0.45)));
     let published = [VERFAHREN_1, VERFAHREN_2, VERFAHREN_3, VERFAHREN_4, VERFAHREN_5];
     for (number, scheme) in published.into_iter().enumerate() {
         compare(&format!("verfahren_{}", number + 1), || {
-            let scheme = Kinetic { friction, ..scheme };
+            let scheme = scheme.with(friction);
             // A bed that varies, so that no tile takes the ground of its first cell for all.
             let ground = |index: [usize; D]| {
                 plane::<D>(tilt.map(|s: f64| s + 1e-3 * index[0] as f64 / cells[0] as f64), 0.4)
             };
-            Simulation::new(scheme, sheet, EULER, StepSize::Fixed(0.002), ground, rough(4, cells, false))
+            Simulation::new(scheme, sheet, StepSize::Fixed(0.002), ground, rough(4, cells, false)).unwrap()
         });
     }
 }
@@ -123,7 +118,7 @@ fn lanes_are_the_scalar_on_planes() {
 }
 
 fn on_terrain(name: &str, friction: Law) {
-    let sheet: Grid<2> = grid([101, 43], [0.0; 2], 5.0, Boundary::Nothing);
+    let sheet: Grid<2> = grid([101, 43], [0.0; 2], 5.0, Boundary::Absorbing);
     let grounds = terrain(&sheet, |[x, y]| {
         let outside = (x - 300.0).hypot(y - 90.0) < 22.0 || x + y < 60.0;
         (!outside).then(|| {
@@ -145,11 +140,11 @@ fn on_terrain(name: &str, friction: Law) {
         |index: [usize; 2]| if grounds[number(index)].cos > 0.0 { start(index) } else { Flow::still(0.0) };
     for second in [false, true] {
         compare(name, || {
-            let (scheme, stages, step) = match second {
-                false => (Balanced::first(friction, 1e-6), EULER, StepSize::Courant(0.9)),
-                true => (Balanced::second(friction, 1e-6), SSP_RK2, StepSize::Courant(0.45)),
+            let (scheme, step) = match second {
+                false => (Balanced::first(friction, 1e-6), StepSize::Courant(0.9)),
+                true => (Balanced::second(friction, 1e-6), StepSize::Courant(0.45)),
             };
-            Simulation::new(scheme, sheet, stages, step, |index| grounds[number(index)], begin)
+            Simulation::new(scheme, sheet, step, |index| grounds[number(index)], begin).unwrap()
         });
     }
 }
@@ -164,7 +159,7 @@ fn lanes_are_the_scalar_on_terrain() {
 
 /// On a bed of waves this high.
 fn on_tables<const D: usize>(cells: [usize; D], waves: f64) {
-    let table = grid(cells, [0.0; D], 0.02, Boundary::Nothing);
+    let table = grid(cells, [0.0; D], 0.02, Boundary::Absorbing);
     // A hole, a wall, a source on one side; where the bed is even, a hole so large that tiles lie in it.
     let wide = if waves == 0.0 { [34, 40] } else { [1, 1] };
     let ground = |index: [usize; D]| {
@@ -197,8 +192,7 @@ fn on_tables<const D: usize>(cells: [usize; D], waves: f64) {
         ("adaptive", ADAPTIVE),
         ("adaptive, 3", third),
     ] {
-        let stages = if scheme.slopes == Slopes::None { EULER } else { SSP_RK2 };
-        compare(name, || Simulation::new(scheme, table, stages, StepSize::Courant(0.4), ground, start));
+        compare(name, || Simulation::new(scheme, table, StepSize::Courant(0.4), ground, start).unwrap());
     }
 }
 

@@ -1,17 +1,9 @@
 //! What a run on a mountain takes of the memory: the fields of its engine, from the first file that is read to the last that
 //! is written, and little beside them.
 
-use granflow::Disk;
-use granflow::case::{Case, Checked};
-use granflow::hadeler_kuttler::scheme::HadelerKuttler;
-use granflow::kernels::Kernel;
+use granflow::Case;
 use granflow::raster::{Crs, Raster};
-use granflow::results::Plane;
-use granflow::run::{Options, run};
-use granflow::savage_hutter::Flow;
-use granflow::savage_hutter::ground::Bed;
-use granflow::setup::{Sand, Scene, Visit};
-use granflow::simulation::Simulation;
+use granflow::session::Options;
 use std::alloc::{GlobalAlloc, Layout, System};
 use std::path::Path;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
@@ -101,27 +93,6 @@ files = ["netcdf"]
     Case::read(&file).unwrap()
 }
 
-/// Bytes that the engine's fields take of a cell, without the maps and with them.
-struct Fields;
-
-impl Visit for Fields {
-    type Output = [usize; 2];
-    fn visit<const D: usize, S>(self, _plane: Plane, _simulation: Simulation<D, S>) -> [usize; 2]
-    where
-        S: Kernel<D, State = Flow<D, f64>>,
-        S::Ground: Bed<D, f64>,
-    {
-        [false, true].map(Simulation::<D, S>::bytes_per_cell)
-    }
-    fn visit_sand<const D: usize>(
-        self,
-        _sand: &Sand<D>,
-        _simulation: Simulation<D, HadelerKuttler>,
-    ) -> [usize; 2] {
-        unreachable!("the case is a mountain")
-    }
-}
-
 /// One test in this file: the allocator counts for the whole process.
 #[test]
 fn a_run_on_a_mountain_takes_what_its_fields_take() {
@@ -131,13 +102,13 @@ fn a_run_on_a_mountain_takes_what_its_fields_take() {
     // The tiles and the ghosts of this grid, and what is released.
     const BESIDE: f64 = 3.0;
     const ELEVATION: f64 = 8.0;
-    let checked = || case.check(&Disk).unwrap();
+    let checked = || case.check().unwrap();
     let (fields, bytes) = most(|| {
-        let Checked { run, kind } = checked();
-        Scene::load(&run, kind).unwrap().simulate(&run, Fields)
+        let run = checked().start().unwrap();
+        [false, true].map(|maps| run.stepper().bytes_per_cell(maps))
     });
-    let most_of_all = fields[0] as f64 + ELEVATION + BESIDE;
-    assert!(per_cell(bytes) < most_of_all, "{} bytes a cell to set up {}", per_cell(bytes), fields[0]);
+    let most_of_all = (fields[0] as f64 + ELEVATION).max(fields[1] as f64) + BESIDE;
+    assert!(per_cell(bytes) < most_of_all, "{} bytes a cell to set up {fields:?}", per_cell(bytes));
 
     let options = Options {
         directory: folder.path().join("out"),
@@ -145,7 +116,8 @@ fn a_run_on_a_mountain_takes_what_its_fields_take() {
         resume: false,
         command: "test".to_owned(),
     };
-    let (finished, bytes) = most(|| run(checked(), &options, &AtomicBool::new(false), &mut |_| ()).unwrap());
+    let (finished, bytes) =
+        most(|| checked().compute(&options, &AtomicBool::new(false), &mut |_| ()).unwrap());
     assert_eq!(finished.summary.steps, 2);
     // What the writer may have in hand.
     let most_of_all = fields[1] as f64 + BESIDE + per_cell(32 << 20);

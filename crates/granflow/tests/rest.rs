@@ -147,7 +147,7 @@ fn inclined([x, y]: [f64; 2], slope: [f64; 2]) -> Surface<2> {
 
 /// A pile of yield share `s` on a tilted plane of terrain, its lengths measured along the bed.
 fn terrain_pile(order: Order, slope: [f64; 2], shape: Shape, s: f64) -> Run<2, Terrain<2, f64>> {
-    let sheet = grid([48, 45], [-120.0, -112.5], 5.0, Boundary::Nothing);
+    let sheet = grid([48, 45], [-120.0, -112.5], 5.0, Boundary::Absorbing);
     let grounds = terrain(&sheet, |x| Some(inclined(x, slope)));
     run(order, (MU, FILM), order.courant(), sheet, &grounds, |x, ground| {
         let surface = 712.0 - s * MU * ground.cos * shape.distance(x, slope);
@@ -206,7 +206,7 @@ fn curved_pile(
     shape: Shape,
     hole: bool,
 ) -> Run<2, Terrain<2, f64>> {
-    let sheet = grid([48, 45], [-120.0, -112.5], 5.0, Boundary::Nothing);
+    let sheet = grid([48, 45], [-120.0, -112.5], 5.0, Boundary::Absorbing);
     let outside = |[x, y]: [f64; 2]| hole && x - y > 20.0 + 7.0 * (0.2 * y).sin();
     let grounds = terrain(&sheet, |x| if outside(x) { None } else { Some(bed(x)) });
     let flattest = grounds.iter().map(|g| g.cos).filter(|c| *c > 0.0).fold(1.0, f64::min);
@@ -259,7 +259,7 @@ fn piles_on_curved_beds_rest_with_nodata_beside_them() {
 fn a_slab_steeper_than_friction_starts_everywhere_also_at_the_edges_of_the_data() {
     for order in ORDERS {
         for hole in [false, true] {
-            let sheet = grid([20, 18], [0.0; 2], 5.0, Boundary::Nothing);
+            let sheet = grid([20, 18], [0.0; 2], 5.0, Boundary::Absorbing);
             let slope = [-0.4, 0.45];
             let inside = |[x, y]: [f64; 2]| !(hole && x + y > 130.0);
             let grounds = terrain(&sheet, |x| inside(x).then(|| inclined(x, slope)));
@@ -282,7 +282,7 @@ fn a_lake_with_an_island_is_exactly_at_rest_without_friction() {
         for seed in 1..=4 {
             for hole in [false, true] {
                 let bed = hills(seed);
-                let sheet = grid([60, 50], [-150.0, -125.0], 5.0, Boundary::Nothing);
+                let sheet = grid([60, 50], [-150.0, -125.0], 5.0, Boundary::Absorbing);
                 let outside = |[x, y]: [f64; 2]| hole && (x - 60.0).hypot(y) < 20.0;
                 let grounds = terrain(&sheet, |x| if outside(x) { None } else { Some(bed(x)) });
                 let mut run = run(order, (0.0, FILM), order.courant(), sheet, &grounds, |x, ground| {
@@ -441,7 +441,8 @@ fn the_static_bound_is_a_disc_in_the_metric() {
         for (slope, held) in [(MU * (1.0 - 1e-9), true), (MU * BEYOND, false)] {
             let slope = [slope * cos, slope * sin];
             let ground = ground(inclined([0.5; 2], slope));
-            let pull = ground.pull(slope.map(|s| -GRAVITY * s), slope.map(|s| GRAVITY * s), [1.0; 2]);
+            let pull =
+                ground.driving_force(slope.map(|s| -GRAVITY * s), slope.map(|s| GRAVITY * s), [1.0; 2]);
             let size = ground.square(pull).sqrt();
             let bound = MU * ground.weight_at_rest();
             assert_eq!(size <= bound, held, "{angle}: {size} against {bound}");
@@ -453,7 +454,7 @@ fn the_static_bound_is_a_disc_in_the_metric() {
 #[test]
 fn a_release_in_a_bowl_comes_to_rest_by_itself() {
     for order in ORDERS {
-        let sheet = grid([61, 61], [0.0; 2], 5.0, Boundary::Nothing);
+        let sheet = grid([61, 61], [0.0; 2], 5.0, Boundary::Absorbing);
         let bowl = |[x, y]: [f64; 2]| {
             let (dx, dy) = (x - 220.0, y - 150.0);
             Some(Surface {

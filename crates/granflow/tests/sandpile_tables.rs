@@ -4,8 +4,8 @@
 use granflow::hadeler_kuttler::exact;
 use granflow::hadeler_kuttler::scheme::{ADAPTIVE, FIRST_ORDER, HadelerKuttler, SECOND_ORDER, Slopes};
 use granflow::hadeler_kuttler::table::Table;
+use granflow::models::hadeler_kuttler::run::site::Site;
 use granflow::simulation::{Simulation, StepSize};
-use granflow::site::Site;
 
 const F: f64 = 0.5;
 const LAMBDA: f64 = 0.45;
@@ -20,7 +20,7 @@ fn run(scheme: HadelerKuttler, (u, v): (&[f64], &[f64])) -> Simulation<1, Hadele
     let n = v.len();
     let h = 1.0 / n as f64;
     let site = Site::level(Table::rectangle([n], [[true; 2]]), [h]);
-    site.simulation(scheme, StepSize::Fixed(LAMBDA * h), &vec![F; n], (u, v))
+    site.simulation(scheme, StepSize::Fixed(LAMBDA * h), &vec![F; n], (u, v)).unwrap()
 }
 
 /// sup |u - ū| and the L1 norm of v - v̄.

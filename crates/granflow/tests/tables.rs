@@ -2,11 +2,12 @@
 //! `target/tmp/tables`.
 
 use granflow::case::FileKind;
+use granflow::models::hadeler_kuttler::TableDomain;
 use granflow::output::Precision;
 use granflow::output::frames::Frames;
 use granflow::output::ledger::{Entry, Ledger};
 use granflow::output::summary::{StopReason, Summary};
-use granflow::results::{Finished, Plane, Story, Table};
+use granflow::results::{Finished, Plane, Story};
 use netcdf_reader::NcFile;
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -22,7 +23,7 @@ fn table(n: usize, inside: impl Fn(f64, f64) -> bool, wall: impl Fn(f64, f64) ->
     let over = |ys: &[f64], xs: &[f64], f: &dyn Fn(f64, f64) -> bool| -> Vec<bool> {
         ys.iter().flat_map(|&y| xs.iter().map(move |&x| f(x, y))).collect()
     };
-    let table = Table {
+    let table = TableDomain {
         inside: over(&centres, &centres, &inside),
         wall_x: over(&centres, &nodes, &wall),
         wall_y: over(&nodes, &centres, &wall),
@@ -30,12 +31,12 @@ fn table(n: usize, inside: impl Fn(f64, f64) -> bool, wall: impl Fn(f64, f64) ->
         y_node: nodes,
         height: Vec::new(),
     };
-    Plane::table(centres.clone(), centres, table)
+    table.plane(centres.clone(), centres)
 }
 
 /// The distance to the open edges on the nodes of a plane table, by Gauss-Seidel sweeps of the eikonal equation.
 fn distance(plane: &Plane, open: impl Fn(f64, f64) -> bool) -> Vec<f64> {
-    let table = plane.as_table().unwrap();
+    let table = plane.domain.get::<TableDomain>().unwrap();
     let (n, size) = (table.x_node.len(), table.x_node[1]);
     let mut on = vec![0.0; n * n];
     table.blank(&mut on);
@@ -83,7 +84,7 @@ fn run(name: &str, plane: Plane, full: &[f64], files: &[FileKind]) -> Finished {
     let directory = PathBuf::from(env!("CARGO_TARGET_TMPDIR")).join("tables").join(name);
     let _ = fs::remove_dir_all(&directory);
     fs::create_dir_all(&directory).unwrap();
-    let table = plane.as_table().unwrap();
+    let table = plane.domain.get::<TableDomain>().unwrap();
     let columns = table.x_node.len();
     let cells = plane.x.len() * plane.y.len().max(1);
     let most = full.iter().copied().filter(|u| u.is_finite()).fold(0.0, f64::max);
@@ -97,7 +98,7 @@ fn run(name: &str, plane: Plane, full: &[f64], files: &[FileKind]) -> Finished {
         .collect();
     table.blank(&mut rolling);
     let mut frames = Frames::create(&directory.join("frames.bin"), Precision::F64, plane.series()).unwrap();
-    let mut ledger = Ledger::create(&directory.join("mass.csv"), plane.exits()).unwrap();
+    let mut ledger = Ledger::create(&directory.join("mass.csv"), plane.outlets()).unwrap();
     for (k, time) in TIMES.into_iter().enumerate() {
         let mut standing: Vec<f64> = full.iter().map(|u| u * (time / TIMES[3]).sqrt()).collect();
         table.blank(&mut standing);
@@ -150,6 +151,7 @@ fn run(name: &str, plane: Plane, full: &[f64], files: &[FileKind]) -> Finished {
         directory,
         files: files.to_vec(),
         case: "title = \"made up\"\n".to_owned(),
+        case_text: String::new(),
         maps: vec![("source", source)],
         frames,
         ledger: ledger.entries().to_vec(),
@@ -175,8 +177,9 @@ fn line() -> Finished {
     let full: Vec<f64> = nodes.iter().zip(&height).map(|(x, b)| x - b).collect();
     let mut wall_x = vec![false; 51];
     wall_x[50] = true;
-    let table = Table { x_node: nodes, inside: vec![true; 50], height, wall_x, ..Table::default() };
-    run("line", Plane::table(centres, Vec::new(), table), &full, &ALL)
+    let table =
+        TableDomain { x_node: nodes, inside: vec![true; 50], height, wall_x, ..TableDomain::default() };
+    run("line", table.plane(centres, Vec::new()), &full, &ALL)
 }
 
 /// Width, height and number of pictures of a PNG whose pixels are not all alike.

@@ -8,29 +8,28 @@ use granflow::savage_hutter::Flow;
 use granflow::savage_hutter::exact::Riemann;
 use granflow::savage_hutter::friction::Coulomb;
 use granflow::savage_hutter::kinetic::{
-    Kinetic, VERFAHREN_1, VERFAHREN_2, VERFAHREN_3, VERFAHREN_4, VERFAHREN_5,
+    Kinetic, VERFAHREN_1, VERFAHREN_2, VERFAHREN_3, VERFAHREN_4, VERFAHREN_5, Variant,
 };
 use granflow::scheme::Boundary;
 use granflow::simulation::{Simulation, StepSize};
-use granflow::time::EULER;
 use oracle::{Case, published};
 use support::{alone, depths, line, plane, states, steps};
 
-const PUBLISHED: [Kinetic; 5] = [VERFAHREN_1, VERFAHREN_2, VERFAHREN_3, VERFAHREN_4, VERFAHREN_5];
+const PUBLISHED: [Variant; 5] = [VERFAHREN_1, VERFAHREN_2, VERFAHREN_3, VERFAHREN_4, VERFAHREN_5];
 
 /// The library's run of a published example.
 fn library(verfahren: u8, case: &Case) -> Simulation<1, Kinetic> {
-    let scheme = Kinetic { friction: Coulomb { mu: case.delta.tan() }, ..PUBLISHED[verfahren as usize - 1] };
+    let scheme = PUBLISHED[verfahren as usize - 1].with(Coulomb { mu: case.delta.tan() });
     let grid = line(case.x_from, case.x_to, case.cells, Boundary::Open);
     let ground = plane([case.zeta.sin()], case.eps * (1.0 + 2.0 * case.delta.tan().powi(2)));
     Simulation::new(
         scheme,
         grid,
-        EULER,
         StepSize::Fixed(case.dt),
         |_| ground,
         |index| Flow::still((case.initial)(grid.centre(index)[0])),
     )
+    .unwrap()
 }
 
 /// The library's run after some steps.

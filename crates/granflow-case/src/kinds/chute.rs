@@ -44,6 +44,19 @@ pub struct Plan {
     pub initial: InitialState,
 }
 
+impl Plan {
+    /// Normal acceleration of a column of cells at rest, g cos(zeta).
+    #[must_use]
+    pub fn weight(&self, column: usize) -> f64 {
+        self.material.gravity * self.zeta[column].cos()
+    }
+    /// Pressure coefficient of a column of cells, beta = epsilon k g cos(zeta): the pressure is beta h^2/2.
+    #[must_use]
+    pub fn beta(&self, column: usize) -> f64 {
+        self.epsilon * self.material.pressure_coefficient * self.weight(column)
+    }
+}
+
 /// The state at time 0 at the centres of the cells, x fastest.
 #[derive(Debug, Clone, PartialEq)]
 pub struct InitialState {

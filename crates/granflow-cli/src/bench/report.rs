@@ -4,7 +4,7 @@ use std::fmt::Write;
 use std::path::PathBuf;
 
 use granflow::output::whole_file;
-use granflow::simulation::{Instructions, Traffic};
+use granflow::simulation::{SimdLevel, Traffic};
 use granflow::speed::{Load, Setup, Spell, Triad, median};
 use serde_json::{Value, json};
 
@@ -60,7 +60,7 @@ impl Row {
 /// Everything that was measured so far.
 pub struct Report {
     json: Option<PathBuf>,
-    instructions: Instructions,
+    instructions: SimdLevel,
     /// Share of the grid that is wet.
     wet: f64,
     quick: bool,
@@ -76,7 +76,7 @@ pub struct Report {
 
 impl Report {
     /// Nothing yet; `json` is the file to write.
-    pub fn new(json: Option<PathBuf>, instructions: Instructions, wet: f64, quick: bool) -> Report {
+    pub fn new(json: Option<PathBuf>, instructions: SimdLevel, wet: f64, quick: bool) -> Report {
         let (triad, yardsticks, rows) = (Vec::new(), Vec::new(), Vec::new());
         Report { json, instructions, wet, quick, array: 0, triad, yardsticks, rows, complete: false }
     }

@@ -1,6 +1,6 @@
 //! Two vectors as one: while one waits for a division or a root, the other goes on.
 
-use super::Wide;
+use super::SimdVector;
 use granflow_model::real::Real;
 use std::ops::{Add, BitAnd, BitOr, Div, Mul, Neg, Not, Sub};
 
@@ -39,8 +39,8 @@ impl<T: Not<Output = T>> Not for Pair<T> {
 impl<L: Real> Real for Pair<L> {
     type Mask = Pair<L::Mask>;
     #[inline(always)]
-    fn of(value: f64) -> Self {
-        Pair(L::of(value), L::of(value))
+    fn splat(value: f64) -> Self {
+        Pair(L::splat(value), L::splat(value))
     }
     #[inline(always)]
     fn lt(self, other: Self) -> Self::Mask {
@@ -51,8 +51,8 @@ impl<L: Real> Real for Pair<L> {
         Pair(self.0.le(other.0), self.1.le(other.1))
     }
     #[inline(always)]
-    fn same(self, other: Self) -> Self::Mask {
-        Pair(self.0.same(other.0), self.1.same(other.1))
+    fn equals(self, other: Self) -> Self::Mask {
+        Pair(self.0.equals(other.0), self.1.equals(other.1))
     }
     #[inline(always)]
     fn select(mask: Self::Mask, yes: Self, no: Self) -> Self {
@@ -88,7 +88,7 @@ impl<L: Real> Real for Pair<L> {
     }
 }
 
-impl<L: Wide> Wide for Pair<L> {
+impl<L: SimdVector> SimdVector for Pair<L> {
     const WIDTH: usize = 2 * L::WIDTH;
     #[inline(always)]
     unsafe fn load(from: *const f64) -> Self {

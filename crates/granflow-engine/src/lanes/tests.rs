@@ -5,34 +5,34 @@ use std::array::from_fn;
 
 /// Something to be tried on every kind of lanes.
 trait Trial {
-    fn on<L: Wide>(&self, inside: impl Inside);
+    fn with_scalar<L: SimdVector>(&self, inside: impl SimdContext);
 }
 
-impl<T: Trial> Job for &T {
+impl<T: Trial> SimdKernel for &T {
     type Output = ();
-    fn run<L: Wide>(self, inside: impl Inside) {
-        self.on::<L>(inside);
+    fn run<L: SimdVector>(self, inside: impl SimdContext) {
+        self.with_scalar::<L>(inside);
     }
 }
 
 /// On the kinds that runs use, and on vectors and pairs of them that they may come to use.
 fn everywhere(trial: &impl Trial) {
-    for instructions in [Instructions::Scalar, Instructions::Narrow, Instructions::Widest] {
-        instructions.run(trial);
+    for simd in [SimdLevel::Scalar, SimdLevel::Avx2, SimdLevel::Best] {
+        simd.run(trial);
     }
-    trial.on::<Pair<f64>>(Anywhere);
+    trial.with_scalar::<Pair<f64>>(ScalarContext);
     #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
     {
         if let Some(simd) = Level::new().as_avx2() {
-            trial.on::<Lanes<Avx2>>(With(simd));
+            trial.with_scalar::<Lanes<Avx2>>(VectorContext(simd));
         }
         if let Level::Avx512(simd) = Level::new() {
-            trial.on::<Pair<Lanes<Avx512>>>(With(simd));
+            trial.with_scalar::<Pair<Lanes<Avx512>>>(VectorContext(simd));
         }
     }
     #[cfg(target_arch = "aarch64")]
     if let Level::Neon(simd) = Level::new() {
-        trial.on::<Lanes<Neon>>(With(simd));
+        trial.with_scalar::<Lanes<Neon>>(VectorContext(simd));
     }
 }
 
@@ -77,7 +77,7 @@ impl Dice {
         }
     }
     /// A vector's worth: of one mood, or of two.
-    fn numbers(&mut self) -> [f64; MOST_LANES] {
+    fn numbers(&mut self) -> [f64; MAX_LANES] {
         let moods: [u64; 2] = from_fn(|_| self.bits() % 6);
         let mixed = self.bits().is_multiple_of(2);
         from_fn(|_| {
@@ -93,24 +93,24 @@ impl Formulas {
     /// What is tried; in the first `CHOSEN` one of the numbers is chosen.
     #[inline(always)]
     fn of<R: Real>([x, y, z]: [R; 3]) -> [R; 8] {
-        let [arc, root] = x.arc();
+        let [arc, root] = x.asin_and_cos();
         [x.min(y), x.max(y), x.mul_add(y, z), arc, root, x.sqrt(), x / y, x.ln()]
     }
     const CHOSEN: usize = 2;
 }
 
 impl Trial for Formulas {
-    fn on<L: Wide>(&self, inside: impl Inside) {
+    fn with_scalar<L: SimdVector>(&self, inside: impl SimdContext) {
         let mut dice = Dice(0x9e37_79b9_7f4a_7c15);
         for _ in 0..20_000 {
-            let numbers: [[f64; MOST_LANES]; 3] = from_fn(|_| dice.numbers());
-            let mut ours = [[0.0; MOST_LANES]; 8];
+            let numbers: [[f64; MAX_LANES]; 3] = from_fn(|_| dice.numbers());
+            let mut in_strip = [[0.0; MAX_LANES]; 8];
             inside.call(
                 #[inline(always)]
                 || {
                     // SAFETY: no vector is longer.
                     let vectors = from_fn(|k| unsafe { L::load(numbers[k].as_ptr()) });
-                    for (place, value) in ours.iter_mut().zip(Self::of::<L>(vectors)) {
+                    for (place, value) in in_strip.iter_mut().zip(Self::of::<L>(vectors)) {
                         // SAFETY: as above.
                         unsafe { value.store(place.as_mut_ptr()) };
                     }
@@ -119,7 +119,7 @@ impl Trial for Formulas {
             for lane in 0..L::WIDTH {
                 let operands: [f64; 3] = from_fn(|k| numbers[k][lane]);
                 for (formula, expected) in Self::of(operands).into_iter().enumerate() {
-                    let found = ours[formula][lane];
+                    let found = in_strip[formula][lane];
                     // Which not-a-number an operation gives is nobody's promise; one that was chosen is as it was.
                     let none = formula >= Self::CHOSEN && expected.is_nan() && found.is_nan();
                     assert!(
@@ -141,13 +141,13 @@ fn formulas_on_lanes_are_those_of_one_number() {
 struct Masks;
 
 impl Trial for Masks {
-    fn on<L: Wide>(&self, inside: impl Inside) {
+    fn with_scalar<L: SimdVector>(&self, inside: impl SimdContext) {
         let mut dice = Dice(0x2545_f491_4f6c_dd1d);
-        let numbers: [f64; MOST_LANES] = from_fn(|k| 1.0 + k as f64);
+        let numbers: [f64; MAX_LANES] = from_fn(|k| 1.0 + k as f64);
         let whole = (1_u64 << L::WIDTH) - 1;
         let random: [u64; 200] = from_fn(|_| dice.bits());
         for wanted in [0, 1, whole >> 1, whole & !1, whole, u64::MAX].into_iter().chain(random) {
-            let (mut read, mut written) = ([9.0; MOST_LANES], [-1.0; MOST_LANES]);
+            let (mut read, mut written) = ([9.0; MAX_LANES], [-1.0; MAX_LANES]);
             let (bits, all, any) = inside.call(
                 #[inline(always)]
                 || {
@@ -164,7 +164,7 @@ impl Trial for Masks {
                 },
             );
             assert_eq!((bits, all, any), (wanted & whole, bits == whole, bits > 0));
-            for k in 0..MOST_LANES {
+            for k in 0..MAX_LANES {
                 let holds = bits >> k & 1 == 1;
                 assert_eq!(written[k], if holds { numbers[k] } else { -1.0 });
                 let expected = if holds { numbers[k] } else { 0.0 };

@@ -1,6 +1,6 @@
 //! What a run takes of the memory, and what a step asks of it at least.
 
-use super::Simulation;
+use super::state::Simulation;
 use crate::field::bytes_per_cell;
 use crate::observe::Maps;
 use granflow_model::scheme::Scheme;
@@ -34,18 +34,18 @@ impl<const D: usize, S: Scheme<D, f64>> Simulation<D, S> {
     /// What a step asks of the memory where every tile is awake and no maps are kept.
     pub fn traffic(&self) -> Traffic {
         let state = bytes_per_cell::<S::State>() as f64;
-        let cells = |even: bool| {
-            let tiles = self.tiles.iter().filter(|tile| tile.even || !even);
+        let cells = |uniform: bool| {
+            let tiles = self.tiles.iter().filter(|tile| tile.uniform || !uniform);
             let count = |[from, to]: [usize; 2]| to - from;
             tiles.map(|tile| count(tile.columns) * count(tile.rows)).sum::<usize>() as f64
         };
         let ground = bytes_per_cell::<S::Ground>() as f64 * (1.0 - cells(true) / cells(false));
         let mut traffic = Traffic { read: 0.0, written: 0.0, allocated: 0.0 };
-        for keep in self.stages {
+        for rk_weight in self.stages {
             traffic.read += state + ground;
             traffic.written += state;
             // A later stage reads what it writes over, for the average.
-            *(if *keep > 0.0 { &mut traffic.read } else { &mut traffic.allocated }) += state;
+            *(if *rk_weight > 0.0 { &mut traffic.read } else { &mut traffic.allocated }) += state;
         }
         traffic
     }

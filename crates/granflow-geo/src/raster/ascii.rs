@@ -21,22 +21,32 @@ const KEYS: [&str; 10] = [
     "nodata_value",
 ];
 
+/// Reads a file, and the `.prj` file beside it if there is one.
 pub(super) fn read(path: &Path, given: Option<&Crs>) -> Result<Raster, RasterError> {
     let bytes = std::fs::read(path).map_err(|source| RasterError::Io { path: path.into(), source })?;
-    let raster = parse(path, &bytes)?;
     let prj = beside(path, "prj");
-    let own = match std::fs::read(&prj) {
-        Err(_) => None,
-        Ok(bytes) => match Crs::parse(&String::from_utf8_lossy(&bytes)) {
-            Ok(crs) => Some(crs),
-            Err(_) if given.is_some() => None,
-            Err(error) => {
-                let cure = "; write that into it, or crs = \"EPSG:xxxx\" into the case";
-                return Err(RasterError::header(&prj, 1, format!("{error}{cure}")));
-            }
-        },
+    let definition = std::fs::read(&prj).ok();
+    from_bytes(path, &bytes, definition.as_deref().map(|definition| (&*prj, definition)), given)
+}
+
+/// Reads what a file called `name` holds; `prj` is name and content of the file with its CRS.
+pub(super) fn from_bytes(
+    name: &Path,
+    bytes: &[u8],
+    prj: Option<(&Path, &[u8])>,
+    given: Option<&Crs>,
+) -> Result<Raster, RasterError> {
+    let raster = parse(name, bytes)?;
+    let own = match prj.map(|(prj, definition)| (prj, Crs::parse(&String::from_utf8_lossy(definition)))) {
+        None => None,
+        Some((_, Ok(crs))) => Some(crs),
+        Some((_, Err(_))) if given.is_some() => None,
+        Some((prj, Err(error))) => {
+            let cure = "; write that into it, or crs = \"EPSG:xxxx\" into the case";
+            return Err(RasterError::header(prj, 1, format!("{error}{cure}")));
+        }
     };
-    Ok(Raster { crs: agreed(path, own, given)?, ..raster })
+    Ok(Raster { crs: agreed(name, own, given)?, ..raster })
 }
 
 /// Header entries with the lines that they stand on.
@@ -176,6 +186,20 @@ mod tests {
         assert_eq!((raster.west, raster.south), (10.0, 20.0));
         assert_eq!((raster.at(0, 0), raster.at(0, 1), raster.at(2, 1)), (4.0, 1.0, 3.0));
         assert!(raster.at(1, 0).is_nan() && raster.at(2, 0).is_nan());
+    }
+
+    #[test]
+    fn bytes_are_read_as_the_file_is() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("dem.asc");
+        let text = format!("{HEADER}1 2 3\n4 5 6\n");
+        std::fs::write(&path, &text).unwrap();
+        let crs = Crs::parse("EPSG:31287").unwrap();
+        let file = Raster::read_in(&path, Some(&crs)).unwrap();
+        assert_eq!(Raster::from_bytes(Path::new("dem.asc"), text.into_bytes(), Some(&crs)).unwrap(), file);
+        let message =
+            Raster::from_bytes(Path::new("a.asc"), b"hello".to_vec(), None).unwrap_err().to_string();
+        assert!(message.contains("a.asc is neither a GeoTIFF nor"), "{message}");
     }
 
     #[test]

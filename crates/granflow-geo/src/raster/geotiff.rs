@@ -20,9 +20,23 @@ const EMBEDDED: &str = "ESRI PE String = ";
 /// TIFF tag of GDAL's metadata, where scale and offset of the values stand.
 const METADATA_TAG: u16 = 42112;
 
+/// Reads a file piece by piece.
 pub(super) fn read(path: &Path, given: Option<&Crs>) -> Result<Raster, RasterError> {
+    decoded(path, GeoTiffFile::open(path), given)
+}
+
+/// Reads what a file called `name` holds.
+pub(super) fn from_bytes(name: &Path, bytes: Vec<u8>, given: Option<&Crs>) -> Result<Raster, RasterError> {
+    decoded(name, GeoTiffFile::from_bytes(bytes), given)
+}
+
+fn decoded(
+    path: &Path,
+    file: Result<GeoTiffFile, geotiff_reader::Error>,
+    given: Option<&Crs>,
+) -> Result<Raster, RasterError> {
     let error = |problem: &dyn std::fmt::Display| RasterError::geotiff(path, problem);
-    let file = GeoTiffFile::open(path).map_err(|e| match e {
+    let file = file.map_err(|e| match e {
         geotiff_reader::Error::NotGeoTiff => error(&unplaced(path)),
         e => error(&format!("the GeoTIFF cannot be read: {e}")),
     })?;
@@ -261,6 +275,8 @@ mod tests {
             assert_eq!(back.crs.is_some(), raster.crs.is_some());
         }
         assert_eq!(Raster::read(&path).unwrap().crs.unwrap().to_string(), "H_he _ Lambert");
+        let bytes = Raster::from_bytes(&path, std::fs::read(&path).unwrap(), None).unwrap();
+        assert_eq!(format!("{bytes:?}"), format!("{:?}", Raster::read(&path).unwrap()), "NaN is not NaN");
         let nowhere =
             hill().write_geotiff(&folder.path().join("no/such/folder.tif")).unwrap_err().to_string();
         assert!(nowhere.contains("folder.tif cannot be written"), "{nowhere}");

@@ -1,7 +1,7 @@
 //! Values between cell centres and on other grids.
 
 use super::Raster;
-use rayon::prelude::*;
+use crate::cells::mapped;
 
 /// From this ratio of new to old cell size on, a new cell takes the mean over its area.
 const MEAN_FROM: f64 = 1.5;
@@ -70,7 +70,7 @@ impl Raster {
                 let (x, y) = centre(k);
                 self.sample(x, y)
             };
-            (0..target.rows * target.columns).into_par_iter().map(value).collect()
+            mapped(target.rows * target.columns, value)
         };
         target
     }

@@ -1,7 +1,6 @@
 //! Polygons as one part of the plane: which places it holds and how far they are from its rim.
 
-use super::vector::Layer;
-use super::{ReleaseError, sound};
+use super::{Layer, ReleaseError};
 use geo::{BoundingRect, Distance, Euclidean, Intersects, Point, Polygon};
 use std::path::Path;
 
@@ -17,17 +16,7 @@ impl Outlines {
     /// # Errors
     /// [`ReleaseError`] for unreadable files, other shapes than polygons, rings that cross themselves, no polygon at all.
     pub fn read(path: &Path) -> Result<Self, ReleaseError> {
-        let mut polygons = Vec::new();
-        for (feature, number) in Layer::read(path)?.features.into_iter().zip(1..) {
-            for polygon in feature.polygons {
-                sound(&polygon).map_err(|problem| ReleaseError::Shape {
-                    path: path.into(),
-                    feature: number,
-                    problem,
-                })?;
-                polygons.push(polygon);
-            }
-        }
+        let polygons = Layer::read(path)?.outlines()?;
         match polygons.is_empty() {
             true => Err(ReleaseError::Empty { path: path.into() }),
             false => Ok(Self { polygons }),

@@ -48,6 +48,9 @@ fn geojson_in_its_forms_with_holes_and_partial_cells() {
         let height = released(json, &Thickness::Value(0.5), &ground()).unwrap();
         assert!((height.iter().sum::<f64>() - 0.5 * (18.0 - 1.25)).abs() < 1e-12);
         assert_eq!((height[10 + 1], height[20 + 2], height[30 + 2], height[20 + 5]), (0.5, 0.0, 0.375, 0.25));
+        let layer = Layer::from_bytes(Path::new("a.geojson"), json.as_bytes(), None, None).unwrap();
+        let by_bytes = layer.thickness(&Thickness::Value(0.5), &ground()).unwrap();
+        assert_eq!(by_bytes.dense(80), height);
     }
 }
 
@@ -102,6 +105,15 @@ fn shapefiles_with_islands_in_holes_and_attributes() {
     let height = polygons(&path, &Thickness::Attribute("Thickness".into()), &ground()).unwrap().dense(80);
     assert!((height.iter().sum::<f64>() - 1.25 * (30.0 - 9.0 + 1.0)).abs() < 1e-12);
     assert_eq!((height[33], height[22], height[11]), (1.25, 0.0, 1.25));
+
+    let [shapes, table] = ["shp", "dbf"].map(|kind| std::fs::read(path.with_extension(kind)).unwrap());
+    let layer = |table| Layer::from_bytes(Path::new("a.shp"), &shapes, table, None);
+    let attribute = Thickness::Attribute("Thickness".into());
+    let by_bytes = layer(Some(&table)).unwrap().thickness(&attribute, &ground()).unwrap().dense(80);
+    assert_eq!(by_bytes, height);
+    assert_eq!(layer(None).unwrap().outlines().unwrap(), Layer::read(&path).unwrap().outlines().unwrap());
+    let message = layer(None).unwrap().thickness(&attribute, &ground()).unwrap_err().to_string();
+    assert!(message.contains("a.shp has no attribute `Thickness`") && message.contains(".dbf"), "{message}");
 
     let message =
         polygons(&path, &Thickness::Attribute("thicknes".into()), &ground()).unwrap_err().to_string();

@@ -6,30 +6,72 @@ use geo::{Area, Contains, Geometry, InteriorPoint, LineString, Polygon};
 use geojson::{GeoJson, JsonObject};
 use shapefile::dbase::{self, FieldValue};
 use shapefile::{Shape, ShapeReader};
-use std::path::Path;
+use std::io::{Cursor, Read, Seek};
+use std::path::{Path, PathBuf};
 
-/// What one file holds.
-pub(super) struct Layer {
-    pub features: Vec<Feature>,
-    pub crs: Option<Crs>,
+/// The polygons of one file, with their attributes.
+#[derive(Debug, Clone)]
+pub struct Layer {
+    /// The file, for messages.
+    pub(super) name: PathBuf,
+    pub(super) features: Vec<Feature>,
+    pub(super) crs: Option<Crs>,
 }
 
 /// One feature: its polygons and its attributes as name and text, the text empty where there is no value.
-#[derive(Default)]
+#[derive(Debug, Clone, Default)]
 pub(super) struct Feature {
     pub polygons: Vec<Polygon>,
     pub attributes: Vec<(String, String)>,
 }
 
+/// The attributes of one shape: name and text.
+type Attributes = Vec<(String, String)>;
+
 impl Layer {
     /// Reads a shapefile (`.shp`; the attributes from `.dbf`, the CRS from `.prj`) or else GeoJSON.
+    ///
+    /// # Errors
+    /// [`ReleaseError::Io`], [`ReleaseError::Format`], [`ReleaseError::Unreadable`], and [`ReleaseError::Shape`] for other
+    /// shapes than polygons.
     pub fn read(path: &Path) -> Result<Layer, ReleaseError> {
         let bytes = std::fs::read(path).map_err(|source| ReleaseError::Io { path: path.into(), source })?;
-        match bytes.get(..4) {
-            Some([0, 0, 0x27, 0x0a]) => shapefile(path),
-            _ => geojson(path, &String::from_utf8_lossy(&bytes)),
+        if !is_shapefile(&bytes) {
+            return geojson(path, &bytes);
         }
+        let shapes = ShapeReader::from_path(path).and_then(ShapeReader::read);
+        let table = beside(path, "dbf");
+        let records = table.exists().then(|| tables().open(&table).and_then(attributes));
+        let crs = std::fs::read(beside(path, "prj")).ok();
+        let crs = crs.and_then(|bytes| Crs::parse(&String::from_utf8_lossy(&bytes)).ok());
+        shapefile(path, shapes, &table, records, crs)
     }
+
+    /// As [`Layer::read`], from the bytes of a file that is called `name` in messages.
+    ///
+    /// What stands beside a shapefile is passed too: the bytes of the `.dbf` as `table`, the content of the `.prj` as
+    /// `crs`. GeoJSON needs neither; its own CRS comes first.
+    ///
+    /// # Errors
+    /// As [`Layer::read`].
+    pub fn from_bytes(
+        name: &Path,
+        bytes: &[u8],
+        table: Option<&[u8]>,
+        crs: Option<Crs>,
+    ) -> Result<Layer, ReleaseError> {
+        if !is_shapefile(bytes) {
+            let layer = geojson(name, bytes)?;
+            return Ok(Layer { crs: layer.crs.or(crs), ..layer });
+        }
+        let shapes = ShapeReader::new(Cursor::new(bytes)).and_then(ShapeReader::read);
+        let records = table.map(|table| tables().build(Cursor::new(table)).and_then(attributes));
+        shapefile(name, shapes, &name.with_extension("dbf"), records, crs)
+    }
+}
+
+fn is_shapefile(bytes: &[u8]) -> bool {
+    bytes.starts_with(&[0, 0, 0x27, 0x0a])
 }
 
 fn unreadable(path: &Path, problem: impl std::fmt::Display) -> ReleaseError {
@@ -41,15 +83,21 @@ fn no_polygon(path: &Path, feature: usize, found: &str) -> ReleaseError {
     ReleaseError::Shape { path: path.into(), feature, problem }
 }
 
-fn shapefile(path: &Path) -> Result<Layer, ReleaseError> {
-    let shapes = ShapeReader::from_path(path).and_then(ShapeReader::read).map_err(|e| unreadable(path, e))?;
-    let table = beside(path, "dbf");
-    let records = match table.exists() {
-        true => attributes(&table).map_err(|e| unreadable(&table, e))?,
-        false => vec![Vec::new(); shapes.len()],
+/// The layer of the shapes of a file and the records of the table beside it.
+fn shapefile(
+    path: &Path,
+    shapes: Result<Vec<Shape>, shapefile::Error>,
+    table: &Path,
+    records: Option<Result<Vec<Attributes>, dbase::Error>>,
+    crs: Option<Crs>,
+) -> Result<Layer, ReleaseError> {
+    let shapes = shapes.map_err(|e| unreadable(path, e))?;
+    let records = match records {
+        Some(records) => records.map_err(|e| unreadable(table, e))?,
+        None => vec![Vec::new(); shapes.len()],
     };
     if records.len() != shapes.len() {
-        return Err(unreadable(&table, format!("{} records for {} shapes", records.len(), shapes.len())));
+        return Err(unreadable(table, format!("{} records for {} shapes", records.len(), shapes.len())));
     }
     let mut features = Vec::with_capacity(shapes.len());
     for ((shape, attributes), number) in shapes.into_iter().zip(records).zip(1..) {
@@ -69,20 +117,20 @@ fn shapefile(path: &Path) -> Result<Layer, ReleaseError> {
         };
         features.push(Feature { polygons: nested(rings), attributes });
     }
-    let crs = match std::fs::read(beside(path, "prj")) {
-        Ok(bytes) => Crs::parse(&String::from_utf8_lossy(&bytes)).ok(),
-        Err(_) => None,
-    };
-    Ok(Layer { features, crs })
+    Ok(Layer { name: path.into(), features, crs })
 }
 
 fn line<P>(points: &[P], place: impl Fn(&P) -> (f64, f64)) -> LineString {
     points.iter().map(place).collect::<Vec<_>>().into()
 }
 
-/// Records in the order of the file; letters outside ASCII in an old code page do not matter to numbers.
-fn attributes(table: &Path) -> Result<Vec<Vec<(String, String)>>, dbase::Error> {
-    let mut reader = dbase::ReaderBuilder::new().with_encoding(dbase::UnicodeLossy).open(table)?;
+/// Letters outside ASCII in an old code page do not matter to numbers.
+fn tables() -> dbase::ReaderBuilder {
+    dbase::ReaderBuilder::new().with_encoding(dbase::UnicodeLossy)
+}
+
+/// Records in the order of the file.
+fn attributes(mut reader: dbase::Reader<impl Read + Seek>) -> Result<Vec<Attributes>, dbase::Error> {
     let names: Vec<String> = reader.fields().iter().map(|field| field.name().to_string()).collect();
     let texts = |record: dbase::Record| {
         let text = |name: &String| (name.clone(), record.get(name).map(text).unwrap_or_default());
@@ -132,7 +180,8 @@ fn nested(rings: Vec<LineString>) -> Vec<Polygon> {
     polygons
 }
 
-fn geojson(path: &Path, text: &str) -> Result<Layer, ReleaseError> {
+fn geojson(path: &Path, bytes: &[u8]) -> Result<Layer, ReleaseError> {
+    let text = String::from_utf8_lossy(bytes);
     if !text.trim_start_matches('\u{feff}').trim_start().starts_with('{') {
         let found = text.chars().take(20).collect::<String>().escape_debug().to_string();
         return Err(ReleaseError::Format { path: path.into(), found });
@@ -161,6 +210,7 @@ fn geojson(path: &Path, text: &str) -> Result<Layer, ReleaseError> {
         Ok(Feature { polygons, attributes })
     });
     Ok(Layer {
+        name: path.into(),
         features: features.collect::<Result<_, ReleaseError>>()?,
         crs: members.as_ref().and_then(named),
     })

@@ -6,9 +6,11 @@
 //! sum over a cell of what is left is its own source.
 
 use super::{Ground, Pile};
-use crate::limiter::{Varies, minmod};
-use crate::real::{Real, each, unroll};
-use crate::scheme::{Cell, Faces, Parts, Scheme, Side, Spacing, Watch, Window, Work, parts};
+use crate::limiter::{Limited, minmod};
+use crate::real::{Real, for_axis, per_axis, power};
+use crate::scheme::{
+    Cell, Components, Diagnostics, Faces, Scheme, SchemeVisitor, Side, Spacing, Stencil, components,
+};
 use crate::time::{EULER, SSP_RK2, Stages};
 
 /// How a cell's values vary across it.
@@ -33,20 +35,12 @@ pub struct HadelerKuttler<const LIMITED: bool = true> {
     pub slopes: Slopes,
 }
 
-/// First order (eqs. 8-10), to be stepped by [`crate::time::EULER`].
+/// First order (eqs. 8-10).
 pub const FIRST_ORDER: HadelerKuttler = HadelerKuttler { slopes: Slopes::None };
-/// Second order (eqs. 16-23), to be stepped by [`crate::time::SSP_RK2`]; not well-balanced in v.
+/// Second order (eqs. 16-23); not well-balanced in v.
 pub const SECOND_ORDER: HadelerKuttler = HadelerKuttler { slopes: Slopes::Minmod };
-/// Second order away from steady states, first order and well-balanced at them (eqs. 36-40), with exponent 2; to be
-/// stepped by [`crate::time::SSP_RK2`].
+/// Second order away from steady states, first order and well-balanced at them (eqs. 36-40), with exponent 2.
 pub const ADAPTIVE: HadelerKuttler = HadelerKuttler { slopes: Slopes::Adaptive { exponent: 2.0 } };
-
-impl HadelerKuttler {
-    /// The time stepping that belongs to the scheme: Euler's without slopes, else [`SSP_RK2`] (eqs. 8, 21-23).
-    pub fn stages(&self) -> Stages {
-        if self.slopes == Slopes::None { EULER } else { SSP_RK2 }
-    }
-}
 
 /// Cells along each axis at a corner.
 const TWO: usize = 2;
@@ -55,7 +49,7 @@ const TWO: usize = 2;
 const LEVEL: f64 = 1e-12;
 
 /// How the values of a cell vary across it.
-pub trait Spread<const D: usize, R: Real>: Parts<R> {
+pub trait CellSlopes<const D: usize, R: Real>: Components<R> {
     /// Not at all.
     fn none() -> Self;
     /// By limited differences, where it can.
@@ -64,7 +58,7 @@ pub trait Spread<const D: usize, R: Real>: Parts<R> {
     fn halves(&self) -> Option<&Halves<D, R>>;
 }
 
-impl<const D: usize, R: Real> Spread<D, R> for () {
+impl<const D: usize, R: Real> CellSlopes<D, R> for () {
     #[inline(always)]
     fn none() {}
     #[inline(always)]
@@ -85,13 +79,13 @@ pub struct Halves<const D: usize, R> {
     /// Theta of the cell, 1 beside the table.
     theta: R,
 }
-parts!([const D: usize, R: Real] Halves<D, R> { v: [R; D], slope: [R; D], edge: [R; D], theta: R } masks {});
+components!([const D: usize, R: Real] Halves<D, R> { v: [R; D], slope: [R; D], edge: [R; D], theta: R });
 
-impl<const D: usize, R: Real> Spread<D, R> for Halves<D, R> {
+impl<const D: usize, R: Real> CellSlopes<D, R> for Halves<D, R> {
     #[inline(always)]
     fn none() -> Self {
         let none = [R::zero(); D];
-        Halves { v: none, slope: none, edge: none, theta: R::of(1.0) }
+        Halves { v: none, slope: none, edge: none, theta: R::splat(1.0) }
     }
     #[inline(always)]
     fn by(halves: Halves<D, R>) -> Self {
@@ -104,58 +98,54 @@ impl<const D: usize, R: Real> Spread<D, R> for Halves<D, R> {
 }
 
 /// How values vary across the cells of a scheme.
-pub trait Kind: Copy + Send + Sync + 'static {
+pub trait SlopeStorage: Copy + Send + Sync + 'static {
     /// In a cell.
-    type Spread<const D: usize, R: Real>: Spread<D, R>;
+    type CellSlopes<const D: usize, R: Real>: CellSlopes<D, R>;
 }
-impl Kind for Varies<false> {
-    type Spread<const D: usize, R: Real> = ();
+impl SlopeStorage for Limited<false> {
+    type CellSlopes<const D: usize, R: Real> = ();
 }
-impl Kind for Varies<true> {
-    type Spread<const D: usize, R: Real> = Halves<D, R>;
+impl SlopeStorage for Limited<true> {
+    type CellSlopes<const D: usize, R: Real> = Halves<D, R>;
 }
 
 /// Where a cell and its lower left node lie. A number, so that a few can be asked at once: 0 is on the table, the node free
 /// to rise.
 #[derive(Clone, Copy, Debug)]
-struct Place<R>(R);
-
-impl<R: Real> Parts<R> for Place<R> {
-    const COUNT: usize = 1;
-    #[inline(always)]
-    fn gather(part: impl Fn(usize) -> R) -> Self {
-        Place(part(0))
-    }
-    #[inline(always)]
-    fn scatter(self, mut put: impl FnMut(usize, R)) {
-        put(0, self.0);
-    }
+struct CellClass<R> {
+    code: R,
 }
 
-impl<R: Real> Place<R> {
+components!([R: Real] CellClass<R> { code: R });
+
+impl<R: Real> CellClass<R> {
+    #[inline(always)]
+    fn new(code: R) -> Self {
+        CellClass { code }
+    }
     const PINNED: f64 = 1.0;
     const OUTSIDE: f64 = 2.0;
 
     #[inline(always)]
     fn of<const D: usize>(ground: &Ground<D, R>) -> Self {
         let zero = R::zero();
-        let outside = R::select(zero.lt(ground.inside), zero, R::of(Self::OUTSIDE));
-        Place(outside + R::select(zero.lt(ground.weight), zero, R::of(Self::PINNED)))
+        let outside = R::select(zero.lt(ground.inside), zero, R::splat(Self::OUTSIDE));
+        CellClass::new(outside + R::select(zero.lt(ground.weight), zero, R::splat(Self::PINNED)))
     }
     #[inline(always)]
     fn inside(self) -> R::Mask {
-        self.0.lt(R::of(Self::OUTSIDE))
+        self.code.lt(R::splat(Self::OUTSIDE))
     }
     /// The lower left node is free to rise.
     #[inline(always)]
     fn free(self) -> R::Mask {
-        self.0.same(R::zero()) | self.0.same(R::of(Self::OUTSIDE))
+        self.code.equals(R::zero()) | self.code.equals(R::splat(Self::OUTSIDE))
     }
 }
 
 /// What a cell offers to its faces and corners.
 #[derive(Clone, Copy, Debug)]
-pub struct Edges<const D: usize, R: Real, S = Halves<D, R>> {
+pub struct FaceStates<const D: usize, R: Real, S = Halves<D, R>> {
     /// Rolling layer.
     v: R,
     /// Slope of the surface in the cell, along each axis.
@@ -166,12 +156,12 @@ pub struct Edges<const D: usize, R: Real, S = Halves<D, R>> {
     poured: [R; D],
     /// 1 where the face at the lower end of an axis is a wall.
     wall: [R; D],
-    place: Place<R>,
-    spread: S,
+    place: CellClass<R>,
+    slopes: S,
 }
-parts!([const D: usize, R: Real, S: Spread<D, R>] Edges<D, R, S> {
-    v: R, slope: [R; D], edge: [R; D], poured: [R; D], wall: [R; D], place: Place<R>, spread: S
-} masks {});
+components!([const D: usize, R: Real, S: CellSlopes<D, R>] FaceStates<D, R, S> {
+    v: R, slope: [R; D], edge: [R; D], poured: [R; D], wall: [R; D], place: CellClass<R>, slopes: S
+});
 
 /// The two ends of a cell along an axis.
 #[derive(Clone, Copy)]
@@ -189,21 +179,21 @@ fn at_end<R: Real>(end: End, mid: R, half: R) -> R {
     }
 }
 
-impl<const D: usize, R: Real, S: Spread<D, R>> Edges<D, R, S> {
+impl<const D: usize, R: Real, S: CellSlopes<D, R>> FaceStates<D, R, S> {
     #[inline(always)]
     fn v_at(&self, axis: usize, end: End) -> R {
-        self.spread.halves().map_or(self.v, |halves| at_end(end, self.v, halves.v[axis]))
+        self.slopes.halves().map_or(self.v, |halves| at_end(end, self.v, halves.v[axis]))
     }
     #[inline(always)]
     fn slope_at(&self, axis: usize, end: End) -> R {
         let mid = self.slope[axis];
-        self.spread.halves().map_or(mid, |halves| at_end(end, mid, halves.slope[axis]))
+        self.slopes.halves().map_or(mid, |halves| at_end(end, mid, halves.slope[axis]))
     }
     /// Along the lower edge, by the smaller Theta of the two cells along it.
     #[inline(always)]
     fn edge_at(&self, axis: usize, end: End, beside: &Self) -> R {
         let mid = self.edge[axis];
-        match (self.spread.halves(), beside.spread.halves()) {
+        match (self.slopes.halves(), beside.slopes.halves()) {
             (Some(here), Some(there)) => at_end(end, mid, here.edge[axis] * here.theta.min(there.theta)),
             _ => mid,
         }
@@ -211,7 +201,7 @@ impl<const D: usize, R: Real, S: Spread<D, R>> Edges<D, R, S> {
     /// Rolling layer at a corner, by its end of each axis.
     #[inline(always)]
     fn v_at_corner(&self, ends: [End; TWO]) -> R {
-        let Some(Halves { v, .. }) = self.spread.halves() else { return self.v };
+        let Some(Halves { v, .. }) = self.slopes.halves() else { return self.v };
         // The axes are added first: they may be swapped without changing a bit.
         let mut across = at_end(ends[0], R::zero(), v[0]);
         if D > 1 {
@@ -224,40 +214,40 @@ impl<const D: usize, R: Real, S: Spread<D, R>> Edges<D, R, S> {
 /// Height of the surface at the lower left node of the cell at `offset`.
 #[inline(always)]
 fn surface<const D: usize, R: Real>(
-    window: &impl Window<D, R, Pile<R>, Ground<D, R>>,
+    stencil: &impl Stencil<D, R, Pile<R>, Ground<D, R>>,
     offset: [isize; D],
 ) -> R {
-    let cell = window.at(offset);
+    let cell = stencil.at(offset);
     cell.state.u + cell.ground.bed
 }
 
 /// The cell at `offset` with constant values.
 #[inline(always)]
-fn constant<const D: usize, R: Real, S: Spread<D, R>>(
-    window: &impl Window<D, R, Pile<R>, Ground<D, R>>,
+fn constant<const D: usize, R: Real, S: CellSlopes<D, R>>(
+    stencil: &impl Stencil<D, R, Pile<R>, Ground<D, R>>,
     offset: [isize; D],
-) -> Edges<D, R, S> {
-    let Cell { state, ground } = window.at(offset);
-    let Spacing { size, per, .. } = window.spacing();
-    let half = R::of(0.5);
+) -> FaceStates<D, R, S> {
+    let Cell { state, ground } = stencil.at(offset);
+    let Spacing { size, inv: per, .. } = stencil.spacing();
+    let half = R::splat(0.5);
     let (mut edge, mut slope) = ([R::zero(); D], [R::zero(); D]);
-    let here = surface(window, offset);
-    unroll!(k in D => {
-        edge[k] = (surface(window, sum(offset, unit(k))) - here) * per[k];
+    let here = surface(stencil, offset);
+    for_axis!(k in D => {
+        edge[k] = (surface(stencil, sum(offset, unit(k))) - here) * per[k];
         slope[k] = edge[k];
         if D > 1 {
-            let far = surface(window, sum(offset, [1; D])) - surface(window, sum(offset, unit(1 - k)));
+            let far = surface(stencil, sum(offset, [1; D])) - surface(stencil, sum(offset, unit(1 - k)));
             slope[k] = (edge[k] + far * per[k]) * half;
         }
     });
-    Edges {
+    FaceStates {
         v: state.v,
         slope,
         edge,
-        poured: each!(k => ground.source[k] * size[k] * half),
+        poured: per_axis!(k => ground.source[k] * size[k] * half),
         wall: ground.wall,
-        place: Place::of(&ground),
-        spread: S::none(),
+        place: CellClass::of(&ground),
+        slopes: S::none(),
     }
 }
 
@@ -270,32 +260,32 @@ fn limited<R: Real>(smooth: R::Mask, lo: R, mid: R, hi: R) -> R {
 /// Does one of the two cells along the lower edge of the cell at `along` the axis belong to the table?
 #[inline(always)]
 fn has_edge<const D: usize, R: Real>(
-    window: &impl Window<D, R, Pile<R>, Ground<D, R>>,
+    stencil: &impl Stencil<D, R, Pile<R>, Ground<D, R>>,
     axis: usize,
     along: isize,
 ) -> R::Mask {
     let mut offset = [0; D];
     offset[axis] = along;
-    let cell = R::zero().lt(window.at(offset).ground.inside);
+    let cell = R::zero().lt(stencil.at(offset).ground.inside);
     offset[1 - axis] = -1;
-    cell | R::zero().lt(window.at(offset).ground.inside)
+    cell | R::zero().lt(stencil.at(offset).ground.inside)
 }
 
 /// Limited differences of everything that varies (eqs. 16-18, 43), 0 beside the edge of the table.
 #[inline(always)]
-fn linear<const D: usize, R: Real, S: Spread<D, R>>(
-    window: &impl Window<D, R, Pile<R>, Ground<D, R>>,
-    here: &Edges<D, R, S>,
+fn linear<const D: usize, R: Real, S: CellSlopes<D, R>>(
+    stencil: &impl Stencil<D, R, Pile<R>, Ground<D, R>>,
+    here: &FaceStates<D, R, S>,
     theta: R,
-) -> Edges<D, R, S> {
-    let half = R::of(0.5);
+) -> FaceStates<D, R, S> {
+    let half = R::splat(0.5);
     let mut edges = *here;
     let none = [R::zero(); D];
     let mut halves = Halves { v: none, slope: none, edge: none, theta };
-    unroll!(axis in D => {
+    for_axis!(axis in D => {
         let step = unit::<D>(axis);
-        let a: Edges<D, R, ()> = constant(window, each!(k => -step[k]));
-        let b: Edges<D, R, ()> = constant(window, step);
+        let a: FaceStates<D, R, ()> = constant(stencil, per_axis!(k => -step[k]));
+        let b: FaceStates<D, R, ()> = constant(stencil, step);
         let smooth = a.place.inside() & b.place.inside() & here.place.inside();
         halves.v[axis] = theta * limited(smooth, a.v, here.v, b.v) * half;
         halves.slope[axis] = theta * limited(smooth, a.slope[axis], here.slope[axis], b.slope[axis]) * half;
@@ -306,11 +296,11 @@ fn linear<const D: usize, R: Real, S: Spread<D, R>>(
         // An edge belongs to the table if one of the two cells along it does.
         let mut exist = smooth;
         if D > 1 {
-            exist = has_edge(window, axis, -1) & has_edge(window, axis, 0) & has_edge(window, axis, 1);
+            exist = has_edge(stencil, axis, -1) & has_edge(stencil, axis, 0) & has_edge(stencil, axis, 1);
         }
         halves.edge[axis] = limited(exist, a.edge[axis], here.edge[axis], b.edge[axis]) * half;
     });
-    edges.spread = S::by(halves);
+    edges.slopes = S::by(halves);
     edges
 }
 
@@ -321,28 +311,28 @@ impl<const LIMITED: bool> HadelerKuttler<LIMITED> {
     #[inline(always)]
     fn residual<const D: usize, R: Real>(
         &self,
-        window: &impl Window<D, R, Pile<R>, Ground<D, R>>,
+        stencil: &impl Stencil<D, R, Pile<R>, Ground<D, R>>,
         smallest: R,
     ) -> R {
         // around[y][x], from the neighbour with smaller coordinates; in one dimension the rows are the same.
-        let around: [[Edges<D, R, ()>; 3]; 3] = each!(y => {
-            each!(x => {
+        let around: [[FaceStates<D, R, ()>; 3]; 3] = per_axis!(y => {
+            per_axis!(x => {
                 let at = [x as isize - 1, y as isize - 1];
-                constant(window, each!(k => at[k]))
+                constant(stencil, per_axis!(k => at[k]))
             })
         });
-        let corners: [[R; 2]; 2] = each!(y => each!(x => {
+        let corners: [[R; 2]; 2] = per_axis!(y => per_axis!(x => {
             corner([[&around[y][x], &around[y][x + 1]], [&around[y + 1][x], &around[y + 1][x + 1]]])
         }));
-        let faces: [Faces<R>; D] = each!(axis => {
+        let faces: [Faces<R>; D] = per_axis!(axis => {
             let (lo, hi) =
                 if axis == 0 { (&around[1][0], &around[1][2]) } else { (&around[0][1], &around[2][1]) };
             Faces { lo: flux(axis, lo, &around[1][1]), hi: flux(axis, &around[1][1], hi) }
         });
-        let ground = window.at([0; D]).ground;
-        let rate = rate_of_v(&ground, &faces, &corners, window.spacing());
-        let [[a, b], [c, d]]: [[R; 2]; 2] = each!(y => each!(x => corners[y][x].abs()));
-        let corners = if D > 1 { ((a + d) + (b + c)) * R::of(0.5) } else { a + b };
+        let ground = stencil.at([0; D]).ground;
+        let rate = rate_of_v(&ground, &faces, &corners, stencil.spacing());
+        let [[a, b], [c, d]]: [[R; 2]; 2] = per_axis!(y => per_axis!(x => corners[y][x].abs()));
+        let corners = if D > 1 { ((a + d) + (b + c)) * R::splat(0.5) } else { a + b };
         corners + rate.abs() * smallest
     }
 
@@ -351,34 +341,34 @@ impl<const LIMITED: bool> HadelerKuttler<LIMITED> {
     fn theta<const D: usize, R: Real>(
         &self,
         exponent: f64,
-        window: &impl Window<D, R, Pile<R>, Ground<D, R>>,
+        stencil: &impl Stencil<D, R, Pile<R>, Ground<D, R>>,
     ) -> R {
-        let smallest = window.spacing().smallest;
-        let residual = self.residual(window, R::of(smallest));
+        let smallest = stencil.spacing().smallest;
+        let residual = self.residual(stencil, R::splat(smallest));
         let square = residual * residual;
-        square / (square + R::of(smallest.powf(exponent)))
+        square / (square + R::splat(power(smallest, exponent)))
     }
 }
 
 /// The offset of the next cell along `axis`.
 #[inline(always)]
 fn unit<const D: usize>(axis: usize) -> [isize; D] {
-    each!(k => isize::from(k == axis))
+    per_axis!(k => isize::from(k == axis))
 }
 
 #[inline(always)]
 fn sum<const D: usize>(a: [isize; D], b: [isize; D]) -> [isize; D] {
-    each!(k => a[k] + b[k])
+    per_axis!(k => a[k] + b[k])
 }
 
 /// H of a face less the value of B there (eqs. 10, 45): what flows towards smaller coordinates.
 #[inline(always)]
-fn flux<const D: usize, R: Real, S: Spread<D, R>>(
+fn flux<const D: usize, R: Real, S: CellSlopes<D, R>>(
     axis: usize,
-    left: &Edges<D, R, S>,
-    right: &Edges<D, R, S>,
+    left: &FaceStates<D, R, S>,
+    right: &FaceStates<D, R, S>,
 ) -> R {
-    let (zero, one) = (R::zero(), R::of(1.0));
+    let (zero, one) = (R::zero(), R::splat(1.0));
     let (a, b) = (left.slope_at(axis, End::Hi), right.slope_at(axis, End::Lo));
     let (v_a, v_b) = (left.v_at(axis, End::Hi), right.v_at(axis, End::Lo));
     let (poured_a, poured_b) = (left.poured[axis], right.poured[axis]);
@@ -389,15 +379,15 @@ fn flux<const D: usize, R: Real, S: Spread<D, R>>(
     if R::any(against) {
         lean = R::select(against, sum / R::select(against, size, one), lean);
     }
-    lean = R::select(size.lt(R::of(LEVEL)), zero, lean);
-    let poured = ((poured_b - poured_a) + lean * (poured_b + poured_a)) * R::of(0.5);
-    let within = (b.positive() * v_b + a.min(zero) * v_a) + poured;
-    let rim = (left.place.0 + right.place.0) + right.wall[axis];
-    if !R::any(!rim.same(zero)) {
+    lean = R::select(size.lt(R::splat(LEVEL)), zero, lean);
+    let poured = ((poured_b - poured_a) + lean * (poured_b + poured_a)) * R::splat(0.5);
+    let within = (b.positive_part() * v_b + a.min(zero) * v_a) + poured;
+    let rim = (left.place.code + right.place.code) + right.wall[axis];
+    if !R::any(!rim.equals(zero)) {
         return within;
     }
     // An open edge takes what comes and gives nothing; level ground leads over it.
-    let over_left = b.positive() * v_b + R::select(b.lt(zero), zero, poured_b);
+    let over_left = b.positive_part() * v_b + R::select(b.lt(zero), zero, poured_b);
     let over_right = a.min(zero) * v_a - R::select(zero.lt(a), zero, poured_a);
     let (in_left, in_right) = (left.place.inside(), right.place.inside());
     let over = R::select(in_left, over_right, over_left);
@@ -416,27 +406,27 @@ fn length<R: Real>(x: R, y: R) -> R {
 /// G at a node (eq. 9; in two dimensions the largest over the cells around it, which keeps v >= 0 and is eq. 9 where
 /// nothing varies along one axis): what the standing layer loses, v (|grad u| - 1).
 #[inline(always)]
-fn corner<const D: usize, R: Real, S: Spread<D, R>>(around: [[&Edges<D, R, S>; 2]; 2]) -> R {
-    let (zero, one) = (R::zero(), R::of(1.0));
+fn corner<const D: usize, R: Real, S: CellSlopes<D, R>>(around: [[&FaceStates<D, R, S>; 2]; 2]) -> R {
+    let (zero, one) = (R::zero(), R::splat(1.0));
     let [[_, below_right], [above_left, above_right]] = around;
     let mut steep = [[zero; 2]; 2];
-    unroll!(axis in D => {
+    for_axis!(axis in D => {
         // The edges that end and that begin at the node, each with the cells along it.
         let (ends, begins) = (if axis == 0 { above_left } else { below_right }, above_right);
         let [ends_beside, begins_beside] =
             if axis == 0 { [around[0][0], around[0][1]] } else { [around[0][0], around[1][0]] };
         let over = ends.edge_at(axis, End::Hi, ends_beside);
         let under = begins.edge_at(axis, End::Lo, begins_beside);
-        steep[axis] = [over.positive(), (-under).positive()];
+        steep[axis] = [over.positive_part(), (-under).positive_part()];
     });
-    let mut rim = above_right.place.0;
-    unroll!(x in TWO => {
-        rim = rim + (around[0][x].place.0 + around[1][x].place.0);
+    let mut rim = above_right.place.code;
+    for_axis!(x in TWO => {
+        rim = rim + (around[0][x].place.code + around[1][x].place.code);
     });
-    let plain = !R::any(!rim.same(zero));
-    let mut most = R::of(f64::NEG_INFINITY);
-    unroll!(y in TWO => {
-        unroll!(x in TWO => {
+    let plain = !R::any(!rim.equals(zero));
+    let mut most = R::splat(f64::NEG_INFINITY);
+    for_axis!(y in TWO => {
+        for_axis!(x in TWO => {
             let cell = around[y][x];
             let slope = if D > 1 { length(steep[0][x], steep[1][y]) } else { steep[0][x] };
             let end = |place: usize| if place == 0 { End::Hi } else { End::Lo };
@@ -457,66 +447,80 @@ fn rate_of_v<const D: usize, R: Real>(
     spacing: &Spacing<D, R>,
 ) -> R {
     let (mut flow, mut poured) = (R::zero(), R::zero());
-    unroll!(axis in D => {
-        flow = flow + (faces[axis].hi - faces[axis].lo) * spacing.per[axis];
+    for_axis!(axis in D => {
+        flow = flow + (faces[axis].hi - faces[axis].lo) * spacing.inv[axis];
         poured = poured + ground.source[axis];
     });
     let [[a, b], [c, d]] = *corners;
-    let mean = if D > 1 { ((a + d) + (b + c)) * R::of(0.25) } else { (a + b) * R::of(0.5) };
+    let mean = if D > 1 { ((a + d) + (b + c)) * R::splat(0.25) } else { (a + b) * R::splat(0.5) };
     R::select(R::zero().lt(ground.inside), flow + (poured + mean), R::zero())
 }
 
 impl<const D: usize, R: Real, const LIMITED: bool> Scheme<D, R> for HadelerKuttler<LIMITED>
 where
-    Varies<LIMITED>: Kind,
+    Limited<LIMITED>: SlopeStorage,
 {
     type State = Pile<R>;
     type Ground = Ground<D, R>;
-    type Prime = ();
-    type Edges = Edges<D, R, <Varies<LIMITED> as Kind>::Spread<D, R>>;
+    type Primitives = ();
+    type FaceStates = FaceStates<D, R, <Limited<LIMITED> as SlopeStorage>::CellSlopes<D, R>>;
     type Flux = R;
     type Corner = R;
-    const DRIFTS: bool = true;
+    const TRACKS_CHANGE: bool = true;
+    const REFUSES_LONG_STEPS: bool = true;
 
-    fn on<L: Real, W: Work<D, L>>(&self, work: W) -> W::Output {
+    /// Euler's method without slopes, else [`SSP_RK2`] (eqs. 8, 21-23).
+    fn stages(&self) -> Stages {
+        if self.slopes == Slopes::None { EULER } else { SSP_RK2 }
+    }
+    /// 1 without slopes, else 1/2 (eqs. 26, 27).
+    fn max_courant(&self) -> f64 {
+        if self.slopes == Slopes::None { 1.0 } else { 0.5 }
+    }
+    /// Half of what is usual elsewhere, as in the paper.
+    fn suggested_courant(&self) -> f64 {
+        0.45 * Scheme::<D, R>::max_courant(self)
+    }
+
+    fn with_scalar<L: Real, V: SchemeVisitor<D, L>>(&self, visitor: V) -> V::Output {
         match self.slopes {
-            Slopes::None => work.with(&HadelerKuttler::<false> { slopes: Slopes::None }),
-            slopes => work.with(&HadelerKuttler::<true> { slopes }),
+            Slopes::None => visitor.visit(&HadelerKuttler::<false> { slopes: Slopes::None }),
+            slopes => visitor.visit(&HadelerKuttler::<true> { slopes }),
         }
     }
     #[inline(always)]
-    fn prime(&self, _here: &Cell<Pile<R>, Ground<D, R>>) {}
+    fn primitives(&self, _here: &Cell<Pile<R>, Ground<D, R>>) {}
     #[inline(always)]
-    fn reconstruct(&self, window: &impl Window<D, R, Pile<R>, Ground<D, R>>, _: &()) -> Self::Edges {
-        let constant: Self::Edges = constant(window, [0; D]);
+    fn reconstruct(&self, stencil: &impl Stencil<D, R, Pile<R>, Ground<D, R>>, _: &()) -> Self::FaceStates {
+        let constant: Self::FaceStates = constant(stencil, [0; D]);
         let theta = match self.slopes {
             Slopes::None => return constant,
-            Slopes::Minmod => R::of(1.0),
-            Slopes::Adaptive { exponent } => self.theta(exponent, window),
+            Slopes::Minmod => R::splat(1.0),
+            Slopes::Adaptive { exponent } => self.theta(exponent, stencil),
         };
-        linear(window, &constant, R::select(constant.place.inside(), theta, R::of(1.0)))
+        linear(stencil, &constant, R::select(constant.place.inside(), theta, R::splat(1.0)))
     }
     #[inline(always)]
-    fn flux(&self, axis: usize, left: &Self::Edges, right: &Self::Edges) -> R {
+    fn flux(&self, axis: usize, left: &Self::FaceStates, right: &Self::FaceStates) -> R {
         flux(axis, left, right)
     }
     #[inline(always)]
-    fn corner(&self, around: [[&Self::Edges; 2]; 2]) -> R {
+    fn corner(&self, around: [[&Self::FaceStates; 2]; 2]) -> R {
         corner(around)
     }
     #[inline(always)]
     fn update(
         &self,
-        window: &impl Window<D, R, Pile<R>, Ground<D, R>>,
-        _edges: &Self::Edges,
+        stencil: &impl Stencil<D, R, Pile<R>, Ground<D, R>>,
+        _edges: &Self::FaceStates,
         faces: &[Faces<R>; D],
         corners: &[[R; 2]; 2],
         dt: R,
     ) -> Pile<R> {
-        let here = window.at([0; D]);
+        let here = stencil.at([0; D]);
         Pile {
             u: here.state.u - dt * corners[0][0],
-            v: here.state.v + dt * rate_of_v(&here.ground, faces, corners, window.spacing()),
+            v: here.state.v + dt * rate_of_v(&here.ground, faces, corners, stencil.spacing()),
         }
     }
 
@@ -531,69 +535,66 @@ where
     /// slopes.
     #[inline(always)]
     fn rate(&self, here: &Cell<Pile<R>, Ground<D, R>>, spacing: &Spacing<D, R>) -> R {
-        let fastest = R::of(1.0).max(here.state.v);
-        let mut sum = R::of(1.0);
-        unroll!(axis in D => {
-            sum = sum + fastest * spacing.per[axis];
+        let fastest = R::splat(1.0).max(here.state.v);
+        let mut sum = R::splat(1.0);
+        for_axis!(axis in D => {
+            sum = sum + fastest * spacing.inv[axis];
         });
         sum
     }
-    fn most_courant(&self) -> f64 {
-        if self.slopes == Slopes::None { 1.0 } else { 0.5 }
-    }
     #[inline(always)]
-    fn average(&self, keep: R, old: &Pile<R>, new: &Pile<R>) -> Pile<R> {
-        let give = R::of(1.0) - keep;
+    fn rk_combine(&self, keep: R, old: &Pile<R>, new: &Pile<R>) -> Pile<R> {
+        let give = R::splat(1.0) - keep;
         Pile { u: keep * old.u + give * new.u, v: keep * old.v + give * new.v }
     }
     /// No sand rolls here and none is poured.
     #[inline(always)]
-    fn rests(&self, here: &Cell<Pile<R>, Ground<D, R>>) -> R::Mask {
+    fn is_static(&self, here: &Cell<Pile<R>, Ground<D, R>>) -> R::Mask {
         let mut sum = here.state.v.abs();
-        unroll!(axis in D => {
+        for_axis!(axis in D => {
             sum = sum + here.ground.source[axis].abs();
         });
-        sum.same(R::zero())
+        sum.equals(R::zero())
     }
     #[inline(always)]
-    fn outside(&self, ground: &Ground<D, R>) -> R::Mask {
-        (ground.inside + ground.weight).same(R::zero())
+    fn is_nodata(&self, ground: &Ground<D, R>) -> R::Mask {
+        (ground.inside + ground.weight).equals(R::zero())
     }
     #[inline(always)]
-    fn exit(&self, here: &Ground<D, R>, there: &Ground<D, R>, way: usize) -> Option<usize> {
+    fn outlet(&self, here: &Ground<D, R>, there: &Ground<D, R>, way: usize) -> Option<usize> {
         let zero = R::zero();
         let leaves = zero.lt(here.inside) & !zero.lt(there.inside);
         let way = if R::any(zero.lt(there.hole)) { 4 } else { way };
         R::any(leaves).then_some(way)
     }
     #[inline(always)]
-    fn supply(&self, ground: &Ground<D, R>) -> R {
+    fn source_rate(&self, ground: &Ground<D, R>) -> R {
         let mut sum = R::zero();
-        unroll!(axis in D => {
+        for_axis!(axis in D => {
             sum = sum + ground.source[axis];
         });
         sum
     }
     #[inline(always)]
-    fn booked(&self, flux: &R, _side: Side) -> R {
+    fn outflow(&self, flux: &R, _side: Side) -> R {
         -*flux
     }
     /// |grad(u + b)| in the cell: 1 is the steepest slope.
-    fn margin(&self, window: &impl Window<D, R, Pile<R>, Ground<D, R>>) -> R {
-        let edges: Edges<D, R, ()> = constant(window, [0; D]);
+    fn yield_ratio(&self, stencil: &impl Stencil<D, R, Pile<R>, Ground<D, R>>) -> R {
+        let edges: FaceStates<D, R, ()> = constant(stencil, [0; D]);
         let mut square = R::zero();
-        unroll!(axis in D => {
+        for_axis!(axis in D => {
             square = square + edges.slope[axis] * edges.slope[axis];
         });
         R::select(edges.place.inside(), square.sqrt(), R::zero())
     }
     /// Thickness of the pile; in place of a speed the rolling layer, which is what moves.
     #[inline(always)]
-    fn watch(&self, here: &Cell<Pile<R>, Ground<D, R>>) -> Watch<R> {
+    fn diagnostics(&self, here: &Cell<Pile<R>, Ground<D, R>>) -> Diagnostics<R> {
         let Cell { state, ground } = here;
-        Watch {
+        Diagnostics {
             volume: ground.weight * state.u + state.v,
-            square: state.v * state.v,
+            speed_squared: state.v * state.v,
             energy: R::zero(),
             thickness: state.u,
             film: R::zero(),

@@ -263,6 +263,7 @@ impl<const D: usize> Table<D> {
         self.steps[axis]
     }
     /// How many places there are.
+    #[cfg(feature = "std")]
     pub(super) fn size(&self) -> usize {
         self.inside.len()
     }

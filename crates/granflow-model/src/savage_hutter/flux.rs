@@ -3,8 +3,8 @@
 //! M(h, xi - u) = (2/pi) h/c sqrt(1 - ((xi - u)/c)^2)_+, c = sqrt(2 beta h) (report eq. 12). What crosses a face
 //! to the right is carried by xi >= 0, to the left by xi < 0.
 
-use crate::real::{Real, each};
-use crate::scheme::parts;
+use crate::real::{Real, per_axis};
+use crate::scheme::components;
 use core::f64::consts::{FRAC_2_PI, FRAC_PI_4, PI};
 
 /// One half of the kinetic density, as fluxes along one axis.
@@ -16,7 +16,7 @@ pub struct Half<R> {
     pub push: R,
 }
 
-parts!([R: Real] Half<R> { mass: R, push: R } masks {});
+components!([R: Real] Half<R> { mass: R, push: R });
 
 impl<R: Real> Half<R> {
     /// Nothing.
@@ -38,7 +38,7 @@ impl<R: Real> Half<R> {
     /// 2 (1 - share) (mass u + push) + share push.
     #[inline(always)]
     pub fn reflected(&self, u: R, share: R) -> R {
-        self.momentum(u) * (R::of(2.0) - (share + share)) + self.push * share
+        self.momentum(u) * (R::splat(2.0) - (share + share)) + self.push * share
     }
     /// The half where `mask` holds, nothing elsewhere.
     #[inline(always)]
@@ -63,11 +63,11 @@ impl<R: Real> Density<R> {
     /// 1/(h c), 1/h without pressure. A depth so small that h c is no normal number has no velocity.
     #[inline(always)]
     pub fn new(h: R, q: R, beta: R) -> Self {
-        let (zero, one) = (R::zero(), R::of(1.0));
+        let (zero, one) = (R::zero(), R::splat(1.0));
         let c = ((beta + beta) * h).sqrt();
-        let wide = R::select(c.same(zero), one, c);
+        let wide = R::select(c.equals(zero), one, c);
         let volume = h * wide;
-        let wet = R::of(f64::MIN_POSITIVE).le(volume);
+        let wet = R::splat(f64::MIN_POSITIVE).le(volume);
         let share = q * R::select(wet, one / R::select(wet, volume, one), zero);
         Density { u: R::select(wet, share * wide, zero), c, a: (-share).max(-one).min(one) }
     }
@@ -81,11 +81,11 @@ impl<R: Real> Density<R> {
     /// At the two ends of a cell, depths `h`, velocities `u`.
     #[inline(always)]
     pub fn ends(h: [R; 2], u: [R; 2], beta: R) -> [Self; 2] {
-        let (zero, one) = (R::zero(), R::of(1.0));
-        let c: [R; 2] = each!(end => ((beta + beta) * h[end]).sqrt());
-        let wide: [R; 2] = each!(end => R::select(c[end].le(zero), one, c[end]));
+        let (zero, one) = (R::zero(), R::splat(1.0));
+        let c: [R; 2] = per_axis!(end => ((beta + beta) * h[end]).sqrt());
+        let wide: [R; 2] = per_axis!(end => R::select(c[end].le(zero), one, c[end]));
         let per = one / (wide[0] * wide[1]);
-        each!(end => Density { u: u[end], c: c[end], a: (-u[end] * (wide[1 - end] * per)).max(-one).min(one) })
+        per_axis!(end => Density { u: u[end], c: c[end], a: (-u[end] * (wide[1 - end] * per)).max(-one).min(one) })
     }
 
     /// The two halves (xi < 0, xi >= 0) under the depth `h`.
@@ -98,13 +98,13 @@ impl<R: Real> Density<R> {
     #[inline(always)]
     pub fn halves(self, h: R) -> [Half<R>; 2] {
         let Density { u, c, a } = self;
-        let (one, half, eighth) = (R::of(1.0), R::of(0.5), R::of(0.125));
+        let (one, half, eighth) = (R::splat(1.0), R::splat(0.5), R::splat(0.125));
         let square = one - a * a;
-        let [x, r] = a.arc();
-        let (ar, third) = (a * r, (square * r) * R::of(1.0 / 3.0));
+        let [x, r] = a.asin_and_cos();
+        let (ar, third) = (a * r, (square * r) * R::splat(1.0 / 3.0));
         let (area, fourth) = (x + ar, ar.mul_add((a + a).mul_add(a, -one), x));
-        let (m0, m2) = (R::of(FRAC_PI_4), R::of(PI / 16.0));
-        let scale = [R::of(FRAC_2_PI) * h, u, c];
+        let (m0, m2) = (R::splat(FRAC_PI_4), R::splat(PI / 16.0));
+        let scale = [R::splat(FRAC_2_PI) * h, u, c];
         [
             Half::of(scale, area.mul_add(half, m0), -third, fourth.mul_add(eighth, m2)),
             Half::of(scale, area.mul_add(-half, m0), third, fourth.mul_add(-eighth, m2)),

@@ -15,9 +15,9 @@ pub struct Resistance<R> {
 
 /// A friction law.
 pub trait Friction: Copy + Send + Sync + 'static {
-    /// Resistance of a mass of `thickness` (normal to the bed) at a speed along the bed of which `square` is the square,
+    /// Resistance of a mass of `thickness` (normal to the bed) at a speed along the bed of which `speed_squared` is the speed_squared,
     /// under the normal acceleration `load` in motion and `weight` at rest.
-    fn resistance<R: Real>(&self, thickness: R, square: R, load: R, weight: R) -> Resistance<R>;
+    fn resistance<R: Real>(&self, thickness: R, speed_squared: R, load: R, weight: R) -> Resistance<R>;
 }
 
 /// mu N+ (Coulomb 1776; report eq. 1, R = cos zeta tan delta).
@@ -30,7 +30,7 @@ pub struct Coulomb {
 impl Friction for Coulomb {
     #[inline(always)]
     fn resistance<R: Real>(&self, _thickness: R, _square: R, load: R, weight: R) -> Resistance<R> {
-        let mu = R::of(self.mu);
+        let mu = R::splat(self.mu);
         Resistance { dry: mu * load, drag: R::zero(), holding: mu * weight }
     }
 }
@@ -48,9 +48,9 @@ pub struct Voellmy {
 
 impl Friction for Voellmy {
     #[inline(always)]
-    fn resistance<R: Real>(&self, thickness: R, square: R, load: R, weight: R) -> Resistance<R> {
-        let coulomb = Coulomb { mu: self.mu }.resistance(thickness, square, load, weight);
-        Resistance { drag: R::of(self.gravity / self.xi) / thickness, ..coulomb }
+    fn resistance<R: Real>(&self, thickness: R, speed_squared: R, load: R, weight: R) -> Resistance<R> {
+        let coulomb = Coulomb { mu: self.mu }.resistance(thickness, speed_squared, load, weight);
+        Resistance { drag: R::splat(self.gravity / self.xi) / thickness, ..coulomb }
     }
 }
 
@@ -65,9 +65,9 @@ pub struct Cohesion {
 
 impl Friction for Cohesion {
     #[inline(always)]
-    fn resistance<R: Real>(&self, thickness: R, square: R, load: R, weight: R) -> Resistance<R> {
-        let coulomb = Coulomb { mu: self.mu }.resistance(thickness, square, load, weight);
-        let bond = R::of(self.bond) / thickness;
+    fn resistance<R: Real>(&self, thickness: R, speed_squared: R, load: R, weight: R) -> Resistance<R> {
+        let coulomb = Coulomb { mu: self.mu }.resistance(thickness, speed_squared, load, weight);
+        let bond = R::splat(self.bond) / thickness;
         Resistance { dry: coulomb.dry + bond, holding: coulomb.holding + bond, ..coulomb }
     }
 }
@@ -94,14 +94,15 @@ pub struct SamosAt {
 
 impl Friction for SamosAt {
     #[inline(always)]
-    fn resistance<R: Real>(&self, thickness: R, square: R, load: R, weight: R) -> Resistance<R> {
-        let (mu, rs0, one) = (R::of(self.mu), R::of(self.rs0), R::of(1.0));
-        let bond = R::of(self.bond) / thickness;
+    fn resistance<R: Real>(&self, thickness: R, speed_squared: R, load: R, weight: R) -> Resistance<R> {
+        let (mu, rs0, one) = (R::splat(self.mu), R::splat(self.rs0), R::splat(1.0));
+        let bond = R::splat(self.bond) / thickness;
         // Rs0/(Rs0 + Rs) with Rs = |V|^2/(N h), multiplied through by N h: no division by a vanishing load.
         let pressure = rs0 * load * thickness;
-        let sum = pressure + square;
+        let sum = pressure + speed_squared;
         let share = R::select(sum.le(R::zero()), one, pressure / R::select(sum.le(R::zero()), one, sum));
-        let wall = (thickness * R::of(1.0 / self.r)).max(one).ln() * R::of(1.0 / self.kappa) + R::of(self.b);
+        let wall = (thickness * R::splat(1.0 / self.r)).max(one).ln() * R::splat(1.0 / self.kappa)
+            + R::splat(self.b);
         Resistance {
             dry: bond + mu * load * (one + share),
             drag: one / (wall * wall * thickness),
@@ -126,12 +127,12 @@ pub enum Law {
 
 impl Friction for Law {
     #[inline(always)]
-    fn resistance<R: Real>(&self, thickness: R, square: R, load: R, weight: R) -> Resistance<R> {
+    fn resistance<R: Real>(&self, thickness: R, speed_squared: R, load: R, weight: R) -> Resistance<R> {
         match self {
-            Law::Coulomb(law) => law.resistance(thickness, square, load, weight),
-            Law::Voellmy(law) => law.resistance(thickness, square, load, weight),
-            Law::Cohesion(law) => law.resistance(thickness, square, load, weight),
-            Law::SamosAt(law) => law.resistance(thickness, square, load, weight),
+            Law::Coulomb(law) => law.resistance(thickness, speed_squared, load, weight),
+            Law::Voellmy(law) => law.resistance(thickness, speed_squared, load, weight),
+            Law::Cohesion(law) => law.resistance(thickness, speed_squared, load, weight),
+            Law::SamosAt(law) => law.resistance(thickness, speed_squared, load, weight),
         }
     }
 }

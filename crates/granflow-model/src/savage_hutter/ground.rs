@@ -1,7 +1,7 @@
 //! What is fixed in a cell: the papers' chute, or a piece of a mountain.
 
-use crate::real::{Real, dot, each, unroll};
-use crate::scheme::{Parts, parts};
+use crate::real::{Real, dot, for_axis, per_axis};
+use crate::scheme::{Components, components};
 
 /// The neighbour's place along an axis.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -16,38 +16,38 @@ pub enum Towards {
 ///
 /// The pull of a mass at rest is F = -M grad(psi), psi the potential of the free surface per mass, M the metric of
 /// horizontal vectors (identity on a chute, I - s s^T on terrain).
-pub trait Bed<const D: usize, R: Real>: Parts<R> {
+pub trait Bed<const D: usize, R: Real>: Components<R> {
     /// The same bed on another scalar.
     type On<L: Real>: Bed<D, L>;
     /// What a face must know of the bed to turn a velocity into it.
-    type Plane: Parts<R>;
+    type Plane: Components<R>;
     /// The same bed with what follows from its slope as that is: rest is not decided in single precision.
     fn exact(self) -> Self;
-    /// See [`Bed::turn`].
+    /// See [`Bed::parallel_transport`].
     fn plane(&self) -> Self::Plane;
     /// Pressure coefficient along `axis`: P = beta h^2/2.
     fn beta(&self, axis: usize) -> R;
     /// psi at the neighbour minus psi here, depths `h_there` and `h`; `dx` is their distance.
     #[inline(always)]
-    fn rise(&self, axis: usize, towards: Towards, there: &Self, h: R, h_there: R, dx: R) -> R {
-        self.climb(axis, towards, there, dx) + self.weight(there, h, h_there)
+    fn potential_jump(&self, axis: usize, towards: Towards, there: &Self, h: R, h_there: R, dx: R) -> R {
+        self.bed_jump(axis, towards, there, dx) + self.pressure_jump(there, h, h_there)
     }
     /// The part of the rise that the bed makes.
-    fn climb(&self, axis: usize, towards: Towards, there: &Self, dx: R) -> R;
+    fn bed_jump(&self, axis: usize, towards: Towards, there: &Self, dx: R) -> R;
     /// The part of the rise that the momentum flux carries as pressure.
-    fn weight(&self, there: &Self, h: R, h_there: R) -> R;
+    fn pressure_jump(&self, there: &Self, h: R, h_there: R) -> R;
     /// Acceleration -M (hi - lo)/(2 dx) of the rises towards both neighbours of each axis.
-    fn pull(&self, lo: [R; D], hi: [R; D], per: [R; D]) -> [R; D];
+    fn driving_force(&self, lo: [R; D], hi: [R; D], per: [R; D]) -> [R; D];
     /// What is left of the pull where the fluxes carry all pressure, if that is the same whatever lies around; then
-    /// [`Bed::cross`] and [`Bed::bend`] are 0.
-    fn slide(&self) -> Option<[R; D]>;
-    /// The part of [`Bed::pull`] that a pressure along the other axes makes (off the diagonal of M).
-    fn cross(&self, lo: [R; D], hi: [R; D], per: [R; D]) -> [R; D];
+    /// [`Bed::cross_force`] and [`Bed::curvature_force`] are 0.
+    fn uniform_driving_force(&self) -> Option<[R; D]>;
+    /// The part of [`Bed::driving_force`] that a pressure along the other axes makes (off the diagonal of M).
+    fn cross_force(&self, lo: [R; D], hi: [R; D], per: [R; D]) -> [R; D];
     /// Acceleration per depth that the change of beta and of the bed's tilt between the neighbours along `axis` leaves beside
     /// the flux; 1/dx is `per`.
-    fn bend(&self, axis: usize, lo: &Self, hi: &Self, per: R) -> R;
+    fn curvature_force(&self, axis: usize, lo: &Self, hi: &Self, per: R) -> R;
     /// Normal acceleration under a mass of velocity `w`, N+ = max(N, 0).
-    fn load(&self, w: [R; D]) -> R;
+    fn normal_load(&self, w: [R; D]) -> R;
     /// Normal acceleration at rest.
     fn weight_at_rest(&self) -> R;
     /// Squared physical length of the tangential vector with horizontal part `v`.
@@ -55,7 +55,7 @@ pub trait Bed<const D: usize, R: Real>: Parts<R> {
     /// Length along the bed of a unit step along `axis`.
     fn stretch(&self, axis: usize) -> R;
     /// The velocities in two tangent planes, each turned into the other's at the same speed along the bed.
-    fn turn(w: [[R; D]; 2], planes: [&Self::Plane; 2]) -> [[R; D]; 2];
+    fn parallel_transport(w: [[R; D]; 2], planes: [&Self::Plane; 2]) -> [[R; D]; 2];
     /// Thickness normal to the bed.
     fn thickness(&self, h: R) -> R;
     /// Rounding of a rise divided by dx: the uncertainty of the pull.
@@ -63,7 +63,7 @@ pub trait Bed<const D: usize, R: Real>: Parts<R> {
     /// Elevation b \[m\], not a number outside the data; a chute has none.
     fn elevation(&self) -> R;
     /// Outside the data.
-    fn outside(&self) -> R::Mask;
+    fn is_nodata(&self) -> R::Mask;
     /// The mirror image across a wall normal to `axis`.
     fn mirror(self, axis: usize) -> Self;
 }
@@ -72,8 +72,8 @@ pub trait Bed<const D: usize, R: Real>: Parts<R> {
 #[inline(always)]
 fn straight<const D: usize, R: Real>(lo: [R; D], hi: [R; D], per: [R; D]) -> [R; D] {
     let mut difference = lo;
-    unroll!(axis in D => {
-        difference[axis] = (lo[axis] - hi[axis]) * (per[axis] * R::of(0.5));
+    for_axis!(axis in D => {
+        difference[axis] = (lo[axis] - hi[axis]) * (per[axis] * R::splat(0.5));
     });
     difference
 }
@@ -93,26 +93,7 @@ pub struct Chute<const D: usize, R> {
     pub curvature: R,
 }
 
-impl<const D: usize, R: Real> Parts<R> for Chute<D, R> {
-    const COUNT: usize = D + 3;
-    #[inline(always)]
-    fn gather(part: impl Fn(usize) -> R) -> Self {
-        let mut tilt = [R::zero(); D];
-        unroll!(axis in D => {
-            tilt[axis] = part(axis);
-        });
-        Chute { tilt, beta: part(D), cos: part(D + 1), curvature: part(D + 2) }
-    }
-    #[inline(always)]
-    fn scatter(self, mut put: impl FnMut(usize, R)) {
-        unroll!(axis in D => {
-            put(axis, self.tilt[axis]);
-        });
-        put(D, self.beta);
-        put(D + 1, self.cos);
-        put(D + 2, self.curvature);
-    }
-}
+components!([const D: usize, R: Real] Chute<D, R> { tilt: [R; D], beta: R, cos: R, curvature: R });
 
 impl<const D: usize, R: Real> Bed<D, R> for Chute<D, R> {
     type On<L: Real> = Chute<D, L>;
@@ -128,7 +109,7 @@ impl<const D: usize, R: Real> Bed<D, R> for Chute<D, R> {
         self.beta
     }
     #[inline(always)]
-    fn climb(&self, axis: usize, towards: Towards, _there: &Self, dx: R) -> R {
+    fn bed_jump(&self, axis: usize, towards: Towards, _there: &Self, dx: R) -> R {
         let fall = self.tilt[axis] * dx;
         match towards {
             Towards::Hi => -fall,
@@ -136,28 +117,28 @@ impl<const D: usize, R: Real> Bed<D, R> for Chute<D, R> {
         }
     }
     #[inline(always)]
-    fn weight(&self, there: &Self, h: R, h_there: R) -> R {
-        self.beta * (h_there - h) + (there.beta - self.beta) * h * R::of(0.5)
+    fn pressure_jump(&self, there: &Self, h: R, h_there: R) -> R {
+        self.beta * (h_there - h) + (there.beta - self.beta) * h * R::splat(0.5)
     }
     #[inline(always)]
-    fn pull(&self, lo: [R; D], hi: [R; D], per: [R; D]) -> [R; D] {
+    fn driving_force(&self, lo: [R; D], hi: [R; D], per: [R; D]) -> [R; D] {
         straight(lo, hi, per)
     }
     #[inline(always)]
-    fn slide(&self) -> Option<[R; D]> {
+    fn uniform_driving_force(&self) -> Option<[R; D]> {
         Some(self.tilt)
     }
     #[inline(always)]
-    fn cross(&self, _lo: [R; D], _hi: [R; D], _per: [R; D]) -> [R; D] {
+    fn cross_force(&self, _lo: [R; D], _hi: [R; D], _per: [R; D]) -> [R; D] {
         [R::zero(); D]
     }
     #[inline(always)]
-    fn bend(&self, _axis: usize, _lo: &Self, _hi: &Self, _per: R) -> R {
+    fn curvature_force(&self, _axis: usize, _lo: &Self, _hi: &Self, _per: R) -> R {
         R::zero()
     }
     #[inline(always)]
-    fn load(&self, w: [R; D]) -> R {
-        (self.cos + self.curvature * dot(w, w)).positive()
+    fn normal_load(&self, w: [R; D]) -> R {
+        (self.cos + self.curvature * dot(w, w)).positive_part()
     }
     #[inline(always)]
     fn weight_at_rest(&self) -> R {
@@ -169,10 +150,10 @@ impl<const D: usize, R: Real> Bed<D, R> for Chute<D, R> {
     }
     #[inline(always)]
     fn stretch(&self, _axis: usize) -> R {
-        R::of(1.0)
+        R::splat(1.0)
     }
     #[inline(always)]
-    fn turn(w: [[R; D]; 2], _planes: [&(); 2]) -> [[R; D]; 2] {
+    fn parallel_transport(w: [[R; D]; 2], _planes: [&(); 2]) -> [[R; D]; 2] {
         w
     }
     #[inline(always)]
@@ -181,14 +162,14 @@ impl<const D: usize, R: Real> Bed<D, R> for Chute<D, R> {
     }
     #[inline(always)]
     fn rounding(&self, h: R, per: R) -> R {
-        R::of(1e-14) * (self.beta * h * per + self.cos)
+        R::splat(1e-14) * (self.beta * h * per + self.cos)
     }
     #[inline(always)]
     fn elevation(&self) -> R {
-        R::of(f64::NAN)
+        R::splat(f64::NAN)
     }
     #[inline(always)]
-    fn outside(&self) -> R::Mask {
+    fn is_nodata(&self) -> R::Mask {
         self.cos.le(R::zero())
     }
     fn mirror(mut self, axis: usize) -> Self {
@@ -244,7 +225,7 @@ impl<const D: usize, R: Real> Terrain<D, R> {
     #[inline(always)]
     fn metric(&self, mut v: [R; D]) -> [R; D] {
         let along = self.cos * self.cos * dot(self.slope, v);
-        unroll!(axis in D => {
+        for_axis!(axis in D => {
             v[axis] = v[axis] - self.slope[axis] * along;
         });
         v
@@ -260,28 +241,29 @@ impl Terrain<2, f64> {
     }
 }
 
-impl<const D: usize, R: Real> Parts<R> for Terrain<D, R> {
+/// By hand, for the curvature is kept as a triangle, and most of it in single precision.
+impl<const D: usize, R: Real> Components<R> for Terrain<D, R> {
     const COUNT: usize = 3 + D + D * (D + 1) / 2;
-    const SHARED: u32 = 1 << (Self::COUNT - 1);
-    const SINGLE: u32 = Self::SHARED - 2;
+    const UNIFORM_MASK: u32 = 1 << (Self::COUNT - 1);
+    const F32_MASK: u32 = Self::UNIFORM_MASK - 2;
     #[inline(always)]
-    fn gather(part: impl Fn(usize) -> R) -> Self {
+    fn load(part: impl Fn(usize) -> R) -> Self {
         let mut cell = Terrain { level: part(0), cos: part(1), ..Terrain::nothing(part(Self::COUNT - 1)) };
-        unroll!(i in D => {
+        for_axis!(i in D => {
             cell.slope[i] = part(2 + i);
-            unroll!(j in D => {
+            for_axis!(j in D => {
                 cell.curvature[i][j] = part(Self::packed(i, j));
             });
         });
         cell
     }
     #[inline(always)]
-    fn scatter(self, mut put: impl FnMut(usize, R)) {
+    fn store(self, mut put: impl FnMut(usize, R)) {
         put(0, self.level);
         put(1, self.cos);
-        unroll!(i in D => {
+        for_axis!(i in D => {
             put(2 + i, self.slope[i]);
-            unroll!(j in D => {
+            for_axis!(j in D => {
                 if j >= i {
                     put(Self::packed(i, j), self.curvature[i][j]);
                 }
@@ -298,7 +280,7 @@ pub struct Tangent<const D: usize, R> {
     /// c^2
     square: R,
 }
-parts!([const D: usize, R: Real] Tangent<D, R> { slope: [R; D], square: R } masks {});
+components!([const D: usize, R: Real] Tangent<D, R> { slope: [R; D], square: R });
 
 /// 1/sqrt(1 - t) for t in \[0, 1): a series without roots and divisions up to t = 1/32, planes at 10 degrees to each other.
 #[inline(always)]
@@ -316,13 +298,13 @@ fn stretch<R: Real>(t: R) -> R {
         3.0 / 8.0,
         0.5,
     ];
-    let one = R::of(1.0);
-    let mut sum = R::of(SERIES[0]);
+    let one = R::splat(1.0);
+    let mut sum = R::splat(SERIES[0]);
     for coefficient in &SERIES[1..] {
-        sum = sum.mul_add(t, R::of(*coefficient));
+        sum = sum.mul_add(t, R::splat(*coefficient));
     }
     sum = sum.mul_add(t, one);
-    let far = R::of(1.0 / 32.0).lt(t);
+    let far = R::splat(1.0 / 32.0).lt(t);
     if R::any(far) {
         let steep = one.le(t);
         let exact = one / (one - R::select(steep, R::zero(), t)).sqrt();
@@ -337,8 +319,8 @@ impl<const D: usize, R: Real> Bed<D, R> for Terrain<D, R> {
     #[inline(always)]
     fn exact(self) -> Self {
         // One step of Newton's: 6e-8 become 5e-15.
-        let whole = (self.cos * self.cos) * (R::of(1.0) + dot(self.slope, self.slope));
-        Terrain { cos: self.cos * (R::of(1.5) - R::of(0.5) * whole), ..self }
+        let whole = (self.cos * self.cos) * (R::splat(1.0) + dot(self.slope, self.slope));
+        Terrain { cos: self.cos * (R::splat(1.5) - R::splat(0.5) * whole), ..self }
     }
     #[inline(always)]
     fn plane(&self) -> Tangent<D, R> {
@@ -347,30 +329,30 @@ impl<const D: usize, R: Real> Bed<D, R> for Terrain<D, R> {
     #[inline(always)]
     fn beta(&self, axis: usize) -> R {
         let s = self.cos * self.slope[axis];
-        self.head() * (R::of(1.0) - s * s)
+        self.head() * (R::splat(1.0) - s * s)
     }
     #[inline(always)]
-    fn climb(&self, _axis: usize, _towards: Towards, there: &Self, _dx: R) -> R {
+    fn bed_jump(&self, _axis: usize, _towards: Towards, there: &Self, _dx: R) -> R {
         self.gravity * (there.level - self.level)
     }
     #[inline(always)]
-    fn weight(&self, there: &Self, h: R, h_there: R) -> R {
+    fn pressure_jump(&self, there: &Self, h: R, h_there: R) -> R {
         there.head() * h_there - self.head() * h
     }
     #[inline(always)]
-    fn pull(&self, lo: [R; D], hi: [R; D], per: [R; D]) -> [R; D] {
+    fn driving_force(&self, lo: [R; D], hi: [R; D], per: [R; D]) -> [R; D] {
         self.metric(straight(lo, hi, per))
     }
     #[inline(always)]
-    fn slide(&self) -> Option<[R; D]> {
+    fn uniform_driving_force(&self) -> Option<[R; D]> {
         None
     }
     #[inline(always)]
-    fn cross(&self, lo: [R; D], hi: [R; D], per: [R; D]) -> [R; D] {
+    fn cross_force(&self, lo: [R; D], hi: [R; D], per: [R; D]) -> [R; D] {
         let straight = straight(lo, hi, per);
         let c2 = self.cos * self.cos;
         let mut cross = [R::zero(); D];
-        unroll!(axis in D => {
+        for_axis!(axis in D => {
             let mut others = straight;
             others[axis] = R::zero();
             cross[axis] = -(self.slope[axis] * (c2 * dot(self.slope, others)));
@@ -378,22 +360,22 @@ impl<const D: usize, R: Real> Bed<D, R> for Terrain<D, R> {
         cross
     }
     #[inline(always)]
-    fn bend(&self, axis: usize, lo: &Self, hi: &Self, per: R) -> R {
+    fn curvature_force(&self, axis: usize, lo: &Self, hi: &Self, per: R) -> R {
         // (beta_hi - beta_lo)/(4 dx) - g (1 - s^2) (c_hi^2 - c_lo^2)/(2 dx), 0 beside the edge of the data.
         let s = self.cos * self.slope[axis];
-        let pressure = (hi.beta(axis) - lo.beta(axis)) * (per * R::of(0.25));
-        let tilt = (hi.head() - lo.head()) * (per * R::of(0.5));
-        let bend = pressure - (R::of(1.0) - s * s) * tilt;
-        let beside = hi.outside() | lo.outside();
+        let pressure = (hi.beta(axis) - lo.beta(axis)) * (per * R::splat(0.25));
+        let tilt = (hi.head() - lo.head()) * (per * R::splat(0.5));
+        let bend = pressure - (R::splat(1.0) - s * s) * tilt;
+        let beside = hi.is_nodata() | lo.is_nodata();
         R::select(beside, R::zero(), bend)
     }
     #[inline(always)]
-    fn load(&self, w: [R; D]) -> R {
+    fn normal_load(&self, w: [R; D]) -> R {
         let mut bent = R::zero();
-        unroll!(axis in D => {
+        for_axis!(axis in D => {
             bent = bent + w[axis] * dot(self.curvature[axis], w);
         });
-        (self.fall() + bent).positive()
+        (self.fall() + bent).positive_part()
     }
     #[inline(always)]
     fn weight_at_rest(&self) -> R {
@@ -406,25 +388,25 @@ impl<const D: usize, R: Real> Bed<D, R> for Terrain<D, R> {
     }
     #[inline(always)]
     fn stretch(&self, axis: usize) -> R {
-        (R::of(1.0) + self.slope[axis] * self.slope[axis]).sqrt()
+        (R::splat(1.0) + self.slope[axis] * self.slope[axis]).sqrt()
     }
     #[inline(always)]
-    fn turn(w: [[R; D]; 2], planes: [&Tangent<D, R>; 2]) -> [[R; D]; 2] {
+    fn parallel_transport(w: [[R; D]; 2], planes: [&Tangent<D, R>; 2]) -> [[R; D]; 2] {
         /// Slower than 1e-75 m/s is no speed.
         const LEAST: f64 = 1e-150;
         // V = (w, grad b . w); what sticks out of the receiver's plane is cut off and the rest stretched to |V|.
-        let up: [R; 2] = each!(side => dot(planes[side].slope, w[side]));
-        let out: [R; 2] = each!(side => up[side] - dot(planes[1 - side].slope, w[side]));
-        let whole: [R; 2] = each!(side => {
+        let up: [R; 2] = per_axis!(side => dot(planes[side].slope, w[side]));
+        let out: [R; 2] = per_axis!(side => up[side] - dot(planes[1 - side].slope, w[side]));
+        let whole: [R; 2] = per_axis!(side => {
             let square = dot(w[side], w[side]) + up[side] * up[side];
-            R::select(square.lt(R::of(LEAST)), R::of(1.0), square)
+            R::select(square.lt(R::splat(LEAST)), R::splat(1.0), square)
         });
-        let per = R::of(1.0) / (whole[0] * whole[1]);
-        each!(side => {
+        let per = R::splat(1.0) / (whole[0] * whole[1]);
+        per_axis!(side => {
             let to = planes[1 - side];
             let cut = to.square * out[side];
             let stretch = stretch((cut * out[side]) * (whole[1 - side] * per));
-            each!(axis => (w[side][axis] + cut * to.slope[axis]) * stretch)
+            per_axis!(axis => (w[side][axis] + cut * to.slope[axis]) * stretch)
         })
     }
     #[inline(always)]
@@ -434,19 +416,19 @@ impl<const D: usize, R: Real> Bed<D, R> for Terrain<D, R> {
     #[inline(always)]
     fn rounding(&self, h: R, per: R) -> R {
         // 1e-14 g (|eta| + dx)/dx
-        R::of(1e-14) * ((self.gravity * self.level.abs() + self.head() * h) * per + self.gravity)
+        R::splat(1e-14) * ((self.gravity * self.level.abs() + self.head() * h) * per + self.gravity)
     }
     #[inline(always)]
     fn elevation(&self) -> R {
-        R::select(self.outside(), R::of(f64::NAN), self.level)
+        R::select(self.is_nodata(), R::splat(f64::NAN), self.level)
     }
     #[inline(always)]
-    fn outside(&self) -> R::Mask {
+    fn is_nodata(&self) -> R::Mask {
         self.cos.le(R::zero())
     }
     fn mirror(mut self, axis: usize) -> Self {
         self.slope[axis] = -self.slope[axis];
-        unroll!(other in D => {
+        for_axis!(other in D => {
             if other != axis {
                 self.curvature[axis][other] = -self.curvature[axis][other];
                 self.curvature[other][axis] = -self.curvature[other][axis];

@@ -1,4 +1,4 @@
-//! The five published kinetic schemes as five constants of one [`Kinetic`].
+//! The five published kinetic schemes as five constants, the [`Variant`]s of one [`Kinetic`].
 //!
 //! Kaland & Struckmeier 2007 (report, Schemes 1-3) and Kaland 2007 (thesis, Verfahren 1-5), errata corrected; in
 //! two dimensions on a plane by applying the fluxes along each axis, the (1, 2, 1)/4 depth per axis and static
@@ -8,8 +8,11 @@ use super::flux::{Density, Half};
 use super::friction::{Coulomb, Friction};
 use super::ground::{Bed, Chute, Towards};
 use super::{Flow, normal};
-use crate::real::{Real, dot, each, unroll};
-use crate::scheme::{Cell, Faces, Near, Scheme, Side, Spacing, Watch, Window, Work, parts};
+use crate::real::{Real, dot, for_axis, per_axis};
+use crate::scheme::{
+    Cell, Diagnostics, Faces, Neighbours, Scheme, SchemeVisitor, Side, Spacing, Stencil, components,
+};
+use crate::time::{EULER, Stages};
 
 /// The depth that enters the half moments at a face.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -38,9 +41,9 @@ pub enum StaticDepth {
     Smoothed,
 }
 
-/// A published scheme as five choices, on a plane chute with Coulomb friction.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Kinetic {
+/// The five choices that tell the published schemes apart.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Variant {
     /// Face depth of a moving cell.
     pub moving: FaceDepth,
     /// Face depth of a resting cell.
@@ -51,36 +54,49 @@ pub struct Kinetic {
     pub static_depth: StaticDepth,
     /// Blend by mu = -q/(dt g(q) h^{n+1}).
     pub blend: bool,
-    /// mu = tan(delta).
-    pub friction: Coulomb,
 }
 
-/// Verfahren 1 = Scheme 1. The friction of the constants is a placeholder for the case's.
-pub const VERFAHREN_1: Kinetic = Kinetic {
+impl Variant {
+    /// The scheme with this friction.
+    pub const fn with(self, friction: Coulomb) -> Kinetic {
+        Kinetic { variant: self, friction }
+    }
+}
+
+/// Verfahren 1 = Scheme 1.
+pub const VERFAHREN_1: Variant = Variant {
     moving: FaceDepth::Own,
     resting: FaceDepth::Own,
     rest: RestTest::Still,
     static_depth: StaticDepth::New,
     blend: false,
-    friction: Coulomb { mu: 0.0 },
 };
 /// Verfahren 2.
-pub const VERFAHREN_2: Kinetic = Kinetic {
+pub const VERFAHREN_2: Variant = Variant {
     moving: FaceDepth::Mean,
     resting: FaceDepth::Mean,
     static_depth: StaticDepth::Smoothed,
     ..VERFAHREN_1
 };
 /// Verfahren 3.
-pub const VERFAHREN_3: Kinetic = Kinetic { rest: RestTest::Slow, ..VERFAHREN_2 };
+pub const VERFAHREN_3: Variant = Variant { rest: RestTest::Slow, ..VERFAHREN_2 };
 /// Verfahren 4 = Scheme 2.
-pub const VERFAHREN_4: Kinetic = Kinetic { blend: true, ..VERFAHREN_3 };
+pub const VERFAHREN_4: Variant = Variant { blend: true, ..VERFAHREN_3 };
 /// Verfahren 5 = Scheme 3.
-pub const VERFAHREN_5: Kinetic = Kinetic { moving: FaceDepth::Own, ..VERFAHREN_4 };
+pub const VERFAHREN_5: Variant = Variant { moving: FaceDepth::Own, ..VERFAHREN_4 };
+
+/// A published scheme on a plane chute with Coulomb friction.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Kinetic {
+    /// Which one.
+    pub variant: Variant,
+    /// mu = tan(delta).
+    pub friction: Coulomb,
+}
 
 /// What a cell offers to its faces.
 #[derive(Clone, Copy, Debug)]
-pub struct Edges<const D: usize, R> {
+pub struct FaceStates<const D: usize, R> {
     h: R,
     u: [R; D],
     /// The halves at the cell's own depth, where the moving flux takes them, along each axis.
@@ -88,7 +104,7 @@ pub struct Edges<const D: usize, R> {
     beta: R,
 }
 
-parts!([const D: usize, R: Real] Edges<D, R> { h: R, u: [R; D], halves: [[Half<R>; 2]; D], beta: R } masks {});
+components!([const D: usize, R: Real] FaceStates<D, R> { h: R, u: [R; D], halves: [[Half<R>; 2]; D], beta: R });
 
 impl Kinetic {
     /// What a cell offers to its faces under a face depth.
@@ -97,12 +113,12 @@ impl Kinetic {
         depth: FaceDepth,
         Cell { state, ground }: &Cell<Flow<D, R>, Chute<D, R>>,
         prime: &[Density<R>; D],
-    ) -> Edges<D, R> {
+    ) -> FaceStates<D, R> {
         let own = depth == FaceDepth::Own;
-        Edges {
+        FaceStates {
             h: state.h,
-            u: each!(k => prime[k].u),
-            halves: each!(k => if own { prime[k].halves(state.h) } else { [Half::none(); 2] }),
+            u: per_axis!(k => prime[k].u),
+            halves: per_axis!(k => if own { prime[k].halves(state.h) } else { [Half::none(); 2] }),
             beta: ground.beta,
         }
     }
@@ -112,10 +128,10 @@ impl Kinetic {
     fn through<const D: usize, R: Real>(
         depth: FaceDepth,
         axis: usize,
-        left: &Edges<D, R>,
-        right: &Edges<D, R>,
+        left: &FaceStates<D, R>,
+        right: &FaceStates<D, R>,
     ) -> Flow<D, R> {
-        let mean = (left.h + right.h) * R::of(0.5);
+        let mean = (left.h + right.h) * R::splat(0.5);
         let (out, back) = match depth {
             FaceDepth::Own => (left.halves[axis][1], right.halves[axis][0]),
             FaceDepth::Mean => {
@@ -124,7 +140,7 @@ impl Kinetic {
                 (out.halves(mean)[1], back.halves(mean)[0])
             }
         };
-        let mut q: [R; D] = each!(k => out.mass * left.u[k] + back.mass * right.u[k]);
+        let mut q: [R; D] = per_axis!(k => out.mass * left.u[k] + back.mass * right.u[k]);
         q[axis] = q[axis] + (out.push + back.push);
         Flow { h: out.mass + back.mass, q }
     }
@@ -133,31 +149,29 @@ impl Kinetic {
     #[inline(always)]
     fn resting_faces<const D: usize, R: Real>(
         &self,
-        near: &Near<D, R, Flow<D, R>, Chute<D, R>>,
+        near: &Neighbours<D, R, Flow<D, R>, Chute<D, R>>,
     ) -> [Faces<Flow<D, R>>; D] {
-        let here = Self::edges(self.resting, &near.here, &self.prime(&near.here));
-        each!(axis => {
+        let here = Self::edges(self.variant.resting, &near.here, &self.primitives(&near.here));
+        per_axis!(axis => {
             let (lo, hi) = (&near.lo[axis], &near.hi[axis]);
-            let lo = Self::edges(self.resting, lo, &self.prime(lo));
-            let hi = Self::edges(self.resting, hi, &self.prime(hi));
+            let lo = Self::edges(self.variant.resting, lo, &self.primitives(lo));
+            let hi = Self::edges(self.variant.resting, hi, &self.primitives(hi));
             Faces {
-                lo: Self::through(self.resting, axis, &lo, &here),
-                hi: Self::through(self.resting, axis, &here, &hi),
+                lo: Self::through(self.variant.resting, axis, &lo, &here),
+                hi: Self::through(self.variant.resting, axis, &here, &hi),
             }
         })
     }
 
     /// beta D h - tilt per axis: the pull that friction must hold, as an acceleration.
     #[inline(always)]
-    fn excess<const D: usize, R: Real>(near: &Near<D, R, Flow<D, R>, Chute<D, R>>) -> [R; D] {
+    fn excess<const D: usize, R: Real>(near: &Neighbours<D, R, Flow<D, R>, Chute<D, R>>) -> [R; D] {
         let Cell { state, ground } = near.here;
         let (size, lo, hi) = (near.spacing.size, &near.lo, &near.hi);
-        let rise_lo: [R; D] =
-            each!(k => ground.rise(k, Towards::Lo, &lo[k].ground, state.h, lo[k].state.h, size[k]));
-        let rise_hi: [R; D] =
-            each!(k => ground.rise(k, Towards::Hi, &hi[k].ground, state.h, hi[k].state.h, size[k]));
-        let pull = ground.pull(rise_lo, rise_hi, near.spacing.per);
-        each!(k => -pull[k])
+        let rise_lo: [R; D] = per_axis!(k => ground.potential_jump(k, Towards::Lo, &lo[k].ground, state.h, lo[k].state.h, size[k]));
+        let rise_hi: [R; D] = per_axis!(k => ground.potential_jump(k, Towards::Hi, &hi[k].ground, state.h, hi[k].state.h, size[k]));
+        let pull = ground.driving_force(rise_lo, rise_hi, near.spacing.inv);
+        per_axis!(k => -pull[k])
     }
 }
 
@@ -165,10 +179,10 @@ impl Kinetic {
 #[inline(always)]
 fn divergence<const D: usize, R: Real>(faces: &[Faces<Flow<D, R>>; D], lambda: [R; D]) -> Flow<D, R> {
     let mut sum = Flow::still(R::zero());
-    unroll!(axis in D => {
+    for_axis!(axis in D => {
         let Faces { lo, hi } = &faces[axis];
         sum.h = sum.h + lambda[axis] * (hi.h - lo.h);
-        unroll!(k in D => {
+        for_axis!(k in D => {
             sum.q[k] = sum.q[k] + lambda[axis] * (hi.q[k] - lo.q[k]);
         });
     });
@@ -178,51 +192,59 @@ fn divergence<const D: usize, R: Real>(faces: &[Faces<Flow<D, R>>; D], lambda: [
 impl<const D: usize, R: Real> Scheme<D, R> for Kinetic {
     type State = Flow<D, R>;
     type Ground = Chute<D, R>;
-    type Prime = [Density<R>; D];
-    type Edges = Edges<D, R>;
+    type Primitives = [Density<R>; D];
+    type FaceStates = FaceStates<D, R>;
     /// Mass and momentum, with the face depth of a moving cell.
     type Flux = Flow<D, R>;
     type Corner = ();
 
-    #[inline(always)]
-    fn on<L: Real, W: Work<D, L>>(&self, work: W) -> W::Output {
-        work.with(self)
+    fn stages(&self) -> Stages {
+        EULER
+    }
+    /// The bound of Verfahren 1 (report eq. 28), under which its depth stays positive; none is proven for the others.
+    fn max_courant(&self) -> f64 {
+        1.0
     }
 
     #[inline(always)]
-    fn prime(&self, Cell { state, ground }: &Cell<Flow<D, R>, Chute<D, R>>) -> [Density<R>; D] {
-        each!(axis => Density::new(state.h, state.q[axis], ground.beta))
+    fn with_scalar<L: Real, V: SchemeVisitor<D, L>>(&self, visitor: V) -> V::Output {
+        visitor.visit(self)
+    }
+
+    #[inline(always)]
+    fn primitives(&self, Cell { state, ground }: &Cell<Flow<D, R>, Chute<D, R>>) -> [Density<R>; D] {
+        per_axis!(axis => Density::new(state.h, state.q[axis], ground.beta))
     }
 
     #[inline(always)]
     fn reconstruct(
         &self,
-        window: &impl Window<D, R, Flow<D, R>, Chute<D, R>>,
+        stencil: &impl Stencil<D, R, Flow<D, R>, Chute<D, R>>,
         prime: &[Density<R>; D],
-    ) -> Edges<D, R> {
-        Self::edges(self.moving, &window.at([0; D]), prime)
+    ) -> FaceStates<D, R> {
+        Self::edges(self.variant.moving, &stencil.at([0; D]), prime)
     }
 
     #[inline(always)]
-    fn flux(&self, axis: usize, left: &Edges<D, R>, right: &Edges<D, R>) -> Flow<D, R> {
-        Self::through(self.moving, axis, left, right)
+    fn flux(&self, axis: usize, left: &FaceStates<D, R>, right: &FaceStates<D, R>) -> Flow<D, R> {
+        Self::through(self.variant.moving, axis, left, right)
     }
 
     #[inline(always)]
-    fn corner(&self, _around: [[&Edges<D, R>; 2]; 2]) {}
+    fn corner(&self, _around: [[&FaceStates<D, R>; 2]; 2]) {}
     #[inline(always)]
     fn update(
         &self,
-        window: &impl Window<D, R, Flow<D, R>, Chute<D, R>>,
-        _edges: &Edges<D, R>,
+        stencil: &impl Stencil<D, R, Flow<D, R>, Chute<D, R>>,
+        _edges: &FaceStates<D, R>,
         faces: &[Faces<Flow<D, R>>; D],
         _corners: &[[(); 2]; 2],
         dt: R,
     ) -> Flow<D, R> {
-        let near = window.cross();
+        let near = stencil.star();
         let Cell { state: Flow { h, q }, ground } = near.here;
-        let lambda: [R; D] = each!(k => dt * near.spacing.per[k]);
-        let (zero, one) = (R::zero(), R::of(1.0));
+        let lambda: [R; D] = per_axis!(k => dt * near.spacing.inv[k]);
+        let (zero, one) = (R::zero(), R::splat(1.0));
         let moving = divergence(faces, lambda);
         let moving_h = normal(h - moving.h);
 
@@ -230,11 +252,11 @@ impl<const D: usize, R: Real> Scheme<D, R> for Kinetic {
         let bound = self.friction.resistance(h, zero, ground.cos, ground.cos).holding;
         // A momentum whose square underflows has no direction: it counts as none.
         let size = dot(q, q).sqrt();
-        let still = size.same(zero);
+        let still = size.equals(zero);
         let per = one / R::select(still, one, size);
-        let g: [R; D] = each!(k => ground.tilt[k] - bound * (q[k] * per));
+        let g: [R; D] = per_axis!(k => ground.tilt[k] - bound * (q[k] * per));
         let square = dot(g, g);
-        let rests = match self.rest {
+        let rests = match self.variant.rest {
             RestTest::Still => still,
             // |q| < dt |g| h
             RestTest::Slow => {
@@ -242,35 +264,38 @@ impl<const D: usize, R: Real> Scheme<D, R> for Kinetic {
                 still | (zero.lt(most) & (size * size).lt(square * (most * most)))
             }
         };
-        let moved = Flow { h: moving_h, q: each!(k => q[k] - moving.q[k] + dt * g[k] * moving_h) };
+        let moved = Flow { h: moving_h, q: per_axis!(k => q[k] - moving.q[k] + dt * g[k] * moving_h) };
         if !R::any(rests) {
             return moved;
         }
 
-        let resting =
-            if self.resting == self.moving { moving } else { divergence(&self.resting_faces(&near), lambda) };
+        let resting = if self.variant.resting == self.variant.moving {
+            moving
+        } else {
+            divergence(&self.resting_faces(&near), lambda)
+        };
         let resting_h = normal(h - resting.h);
         // g~: the static force per mass, tilt plus the excess cut to the disc of radius R
         let by_neighbours = Self::excess(&near);
         let excess = dot(by_neighbours, by_neighbours).sqrt();
         let over = bound.lt(excess);
         let cut = R::select(over, bound / R::select(over, excess, one), one);
-        let held: [R; D] = each!(k => ground.tilt[k] + by_neighbours[k] * cut);
+        let held: [R; D] = per_axis!(k => ground.tilt[k] + by_neighbours[k] * cut);
         // 1 - mu with mu = -q.g/(dt |g|^2 h^{n+1}); q = 0 is rest in words
         let weight = dt * square * moving_h;
-        let no_weight = weight.same(zero) | still;
+        let no_weight = weight.equals(zero) | still;
         let blend = one + R::select(no_weight, zero, dot(q, g) / R::select(no_weight, one, weight));
-        let static_depth = match self.static_depth {
+        let static_depth = match self.variant.static_depth {
             StaticDepth::New => [resting_h; D],
-            StaticDepth::Smoothed => each!(k => {
-                ((near.lo[k].state.h + near.hi[k].state.h) + (h + h)) * R::of(0.25)
+            StaticDepth::Smoothed => per_axis!(k => {
+                ((near.lo[k].state.h + near.hi[k].state.h) + (h + h)) * R::splat(0.25)
             }),
         };
         Flow {
             h: R::select(rests, resting_h, moving_h),
-            q: each!(k => {
+            q: per_axis!(k => {
                 let source = dt * held[k] * static_depth[k];
-                let rest = if self.blend { blend * source } else { q[k] + source };
+                let rest = if self.variant.blend { blend * source } else { q[k] + source };
                 R::select(rests, rest - resting.q[k], moved.q[k])
             }),
         }
@@ -284,37 +309,37 @@ impl<const D: usize, R: Real> Scheme<D, R> for Kinetic {
     }
     #[inline(always)]
     fn rate(&self, here: &Cell<Flow<D, R>, Chute<D, R>>, spacing: &Spacing<D, R>) -> R {
-        here.state.rate(&here.ground, spacing.per)
+        here.state.rate(&here.ground, spacing.inv)
     }
     #[inline(always)]
-    fn average(&self, keep: R, old: &Flow<D, R>, new: &Flow<D, R>) -> Flow<D, R> {
-        let give = R::of(1.0) - keep;
-        Flow { h: keep * old.h + give * new.h, q: each!(k => keep * old.q[k] + give * new.q[k]) }
+    fn rk_combine(&self, keep: R, old: &Flow<D, R>, new: &Flow<D, R>) -> Flow<D, R> {
+        let give = R::splat(1.0) - keep;
+        Flow { h: keep * old.h + give * new.h, q: per_axis!(k => keep * old.q[k] + give * new.q[k]) }
     }
     /// The published schemes prove no rest; a dry cell counts.
     #[inline(always)]
-    fn rests(&self, here: &Cell<Flow<D, R>, Chute<D, R>>) -> R::Mask {
-        here.state.h.same(R::zero())
+    fn is_static(&self, here: &Cell<Flow<D, R>, Chute<D, R>>) -> R::Mask {
+        here.state.h.equals(R::zero())
     }
     #[inline(always)]
-    fn outside(&self, ground: &Chute<D, R>) -> R::Mask {
-        ground.outside()
+    fn is_nodata(&self, ground: &Chute<D, R>) -> R::Mask {
+        ground.is_nodata()
     }
     /// The flux of the moving depth; a resting edge cell of Verfahren 5 books the other one (erratum 5).
     #[inline(always)]
-    fn booked(&self, flux: &Flow<D, R>, _side: Side) -> R {
+    fn outflow(&self, flux: &Flow<D, R>, _side: Side) -> R {
         flux.h
     }
-    fn margin(&self, window: &impl Window<D, R, Flow<D, R>, Chute<D, R>>) -> R {
-        let near = window.cross();
+    fn yield_ratio(&self, stencil: &impl Stencil<D, R, Flow<D, R>, Chute<D, R>>) -> R {
+        let near = stencil.star();
         let Cell { state, ground } = near.here;
         let excess = Self::excess(&near);
         let bound = self.friction.resistance(state.h, R::zero(), ground.cos, ground.cos).holding;
         let none = state.h.le(R::zero()) | bound.le(R::zero());
-        R::select(none, R::zero(), dot(excess, excess).sqrt() / R::select(none, R::of(1.0), bound))
+        R::select(none, R::zero(), dot(excess, excess).sqrt() / R::select(none, R::splat(1.0), bound))
     }
     #[inline(always)]
-    fn watch(&self, here: &Cell<Flow<D, R>, Chute<D, R>>) -> Watch<R> {
-        here.state.watch(&here.ground, R::zero())
+    fn diagnostics(&self, here: &Cell<Flow<D, R>, Chute<D, R>>) -> Diagnostics<R> {
+        here.state.diagnostics(&here.ground, R::zero())
     }
 }

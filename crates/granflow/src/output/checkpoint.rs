@@ -36,7 +36,7 @@ pub enum Numbers<'a> {
     /// In double precision.
     Double(Cow<'a, [f64]>),
     /// In single precision.
-    Single(&'a [f32]),
+    Single(Cow<'a, [f32]>),
 }
 
 impl Numbers<'_> {
@@ -50,7 +50,7 @@ impl Numbers<'_> {
     pub(crate) fn chunks(&self, most: usize) -> Vec<Numbers<'_>> {
         match self {
             Numbers::Double(values) => values.chunks(most).map(|part| Numbers::Double(part.into())).collect(),
-            Numbers::Single(values) => values.chunks(most).map(Numbers::Single).collect(),
+            Numbers::Single(values) => values.chunks(most).map(|part| Numbers::Single(part.into())).collect(),
         }
     }
     /// Append them to `bytes` as the file has them.
@@ -282,7 +282,7 @@ mod tests {
                 ("thickness".into(), double([1.0, f64::from_bits(0x7ff8_0000_0000_beef), 5e-324])),
                 ("nothing".into(), double([])),
                 ("momentum".into(), double((0..70_000).map(|i| f64::from(i).sin()))),
-                ("peak_speed".into(), Numbers::Single(&[0.1, f32::MIN_POSITIVE])),
+                ("peak_speed".into(), Numbers::Single(Cow::Borrowed(&[0.1, f32::MIN_POSITIVE]))),
             ],
         }
     }

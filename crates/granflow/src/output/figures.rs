@@ -35,3 +35,18 @@ pub trait Save: Figure {
 }
 
 impl<F: Figure + ?Sized> Save for F {}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_file_that_cannot_be_written_is_named() {
+        let folder = tempfile::tempdir().unwrap();
+        let file = folder.path().join("file");
+        std::fs::write(&file, "").unwrap();
+        let figure = HeatMap { xs: &[0.0, 1.0], ys: &[0.0, 1.0], values: &[1.0; 4], ..Default::default() };
+        let message = figure.save(&file.join("inside.png")).unwrap_err().to_string();
+        assert!(message.contains("inside.png"), "{message}");
+    }
+}

@@ -1,12 +1,13 @@
 //! The ledger `mass.csv`: where the mass is at every output instant, and the sums it rests on.
 
 use super::{Error, whole_file};
-use crate::real::Sum;
+use crate::real::CompensatedSum;
+use crate::run::{Run, Totals};
 use std::fs::{self, OpenOptions};
 use std::io::Write;
 use std::path::{Path, PathBuf};
 
-/// The columns of the file, in order; `mass_out_nodata` is `mass_out_hole` where a sandpile grows on a table.
+/// The columns of the file, in order; the model names the five after `mass_out_`.
 pub const COLUMNS: [&str; 15] = [
     "time",
     "step",
@@ -26,17 +27,17 @@ pub const COLUMNS: [&str; 15] = [
 ];
 
 /// The columns `mass_out_left`, ... among [`COLUMNS`].
-const EXITS: std::ops::Range<usize> = 5..10;
+const OUTLETS: std::ops::Range<usize> = 5..10;
 
-/// The header with these names for what lies behind the five exits.
+/// The header with these names of the five outlets.
 fn header(exits: [&str; 5]) -> String {
     let named = exits.map(|exit| format!("mass_out_{exit}"));
     let named = named.iter().map(String::as_str);
-    let columns: Vec<&str> = COLUMNS[..EXITS.start]
+    let columns: Vec<&str> = COLUMNS[..OUTLETS.start]
         .iter()
         .copied()
         .chain(named)
-        .chain(COLUMNS[EXITS.end..].iter().copied())
+        .chain(COLUMNS[OUTLETS.end..].iter().copied())
         .collect();
     columns.join(",")
 }
@@ -45,7 +46,7 @@ fn header(exits: [&str; 5]) -> String {
 fn is_header(line: &str) -> bool {
     let columns: Vec<&str> = line.split(',').collect();
     let fits = |(k, column): (usize, &&str)| {
-        if EXITS.contains(&k) { column.starts_with("mass_out_") } else { *column == COLUMNS[k] }
+        if OUTLETS.contains(&k) { column.starts_with("mass_out_") } else { *column == COLUMNS[k] }
     };
     columns.len() == COLUMNS.len() && columns.iter().enumerate().all(fits)
 }
@@ -66,21 +67,39 @@ pub struct Entry {
     pub mass: f64,
     /// Mass that was released or poured on.
     pub mass_in: f64,
-    /// What left over the sides and inside them: left, right, bottom, top, and into nodata or the holes of a table.
+    /// Mass that left over the sides and inside them: left, right, bottom, top, and inside the grid.
     pub out: [f64; 5],
     /// (mass - `mass_in` + mass out - mass at the start) / (mass at the start + `mass_in`).
     pub mass_error: f64,
-    /// Cells that hold mass above a film; on a table those with sand.
+    /// Cells that hold mass above a film.
     pub wet_cells: u64,
-    /// Cells that move; on a table those with a rolling layer.
+    /// Cells that move.
     pub moving_cells: u64,
-    /// Largest speed; NaN on a table.
+    /// Largest speed; NaN where the model has none.
     pub max_speed: f64,
-    /// Kinetic energy per density; NaN on a table.
+    /// Kinetic energy per density; NaN where the model has none.
     pub kinetic_energy: f64,
 }
 
 impl Entry {
+    /// The line of a run as it stands.
+    pub fn of(run: &mut dyn Run) -> Entry {
+        let totals = run.take_totals();
+        let speeds = |value: f64| if run.has_speed() { value } else { f64::NAN };
+        Entry {
+            time: run.time(),
+            step: run.steps(),
+            mass: totals.volume,
+            mass_in: run.stepper().poured(),
+            out: run.stepper().outflow(),
+            mass_error: mass_error(run, &totals),
+            wet_cells: totals.wet as u64,
+            moving_cells: totals.moving as u64,
+            max_speed: speeds(totals.speed),
+            kinetic_energy: speeds(totals.energy),
+        }
+    }
+
     /// All that left: the sum over the sides and nodata.
     #[must_use]
     pub fn mass_out(&self) -> f64 {
@@ -230,12 +249,20 @@ impl Ledger {
     }
 }
 
+/// (volume + left - initial - poured)/(initial + poured), and 0 of nothing.
+pub fn mass_error(run: &dyn Run, totals: &Totals) -> f64 {
+    let (gone, poured, initial) =
+        (sum(run.stepper().outflow()), run.stepper().poured(), run.record().initial);
+    let whole = initial + poured;
+    if whole == 0.0 { 0.0 } else { (totals.volume + gone - initial - poured) / whole }
+}
+
 /// The sum of `values` in their order, with Neumaier's compensation: its error does not grow with their number.
 ///
 /// A. Neumaier, Rundungsfehleranalyse einiger Verfahren zur Summation endlicher Summen, ZAMM 54 (1974), algorithm IV.
 #[must_use]
 pub fn sum(values: impl IntoIterator<Item = f64>) -> f64 {
-    let mut sum = Sum::default();
+    let mut sum = CompensatedSum::default();
     values.into_iter().for_each(|value| sum.add(value));
     sum.value()
 }
@@ -287,7 +314,7 @@ mod tests {
     }
 
     #[test]
-    fn the_books_of_a_table_name_its_hole_and_leave_out_the_speed() {
+    fn the_outlets_are_named_and_what_does_not_apply_is_left_out() {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("mass.csv");
         let mut ledger = Ledger::create(&path, ["left", "right", "bottom", "top", "hole"]).unwrap();

@@ -6,6 +6,8 @@
 use super::frames::Frames;
 use super::hdf5::{Block, allocate};
 use super::{Error, Precision, whole_file};
+#[cfg(feature = "geo")]
+use crate::raster::well_known_text;
 use netcdf_writer::{DimensionId, NcAttrValue, NcFileBuilder, NcWriteFormat, NcWriteOptions, VariableId};
 use std::borrow::Cow;
 use std::io::{self, Write};
@@ -74,7 +76,7 @@ pub enum Values<'a> {
     /// One map that does not change.
     Static(Cow<'a, [f64]>),
     /// One map per instant, in memory.
-    Series(Vec<Vec<f64>>),
+    Series(Cow<'a, [Vec<f64>]>),
     /// The field of this name in the store of frames.
     Stored(String),
 }
@@ -112,7 +114,7 @@ pub struct Dataset<'a> {
     pub title: String,
     /// What made the file; see [`history`].
     pub history: String,
-    /// The case as one text that computes the same when it is run again.
+    /// The case as it was computed.
     pub case: String,
     /// Further global attributes.
     pub attributes: Vec<(String, String)>,
@@ -148,22 +150,47 @@ impl Dataset<'_> {
     ///
     /// # Errors
     /// [`Error::Invalid`] if names, shapes and frames do not fit together; [`Error::Io`], [`Error::Damaged`].
-    pub fn write(&self, path: &Path, mut frames: Option<&mut Frames>) -> Result<(), Error> {
-        let plan = self.plan(frames.as_deref()).map_err(|problem| Error::invalid(path, problem))?;
-        let mut skeleton = self.skeleton().map_err(|error| Error::invalid(path, error.to_string()))?;
+    pub fn write(&self, path: &Path, frames: Option<&mut Frames>) -> Result<(), Error> {
+        let layout = self.layout(frames.as_deref()).map_err(|problem| Error::invalid(path, problem))?;
+        whole_file(path, |out| self.stream(&layout, frames, out))
+    }
+
+    /// The bytes of the file, where no series is stored on disk.
+    ///
+    /// # Errors
+    /// [`Error::Invalid`] if names and shapes do not fit together.
+    pub fn to_bytes(&self) -> Result<Vec<u8>, Error> {
+        let name = Path::new("result.nc");
+        let layout = self.layout(None).map_err(|problem| Error::invalid(name, problem))?;
+        let mut bytes = Vec::new();
+        self.stream(&layout, None, &mut bytes).map_err(Error::io(name, "write"))?;
+        Ok(bytes)
+    }
+
+    /// Where everything stands in the file, after checking that it fits together.
+    fn layout(&self, frames: Option<&Frames>) -> Result<Layout, String> {
+        let plan = self.plan(frames)?;
+        let mut skeleton = self.skeleton().map_err(|error| error.to_string())?;
         let sizes: Vec<_> = self.variables.iter().zip(&plan).map(|(v, maps)| maps.bytes(v)).collect();
-        let blocks = allocate(&mut skeleton, &sizes).map_err(|problem| Error::invalid(path, problem))?;
-        whole_file(path, |out| {
-            out.write_all(&skeleton)?;
-            let mut position = skeleton.len() as u64;
-            for ((variable, maps), block) in self.variables.iter().zip(&plan).zip(&blocks) {
-                let Block { address, size } = *block;
-                out.write_all(&vec![0; (address - position) as usize])?;
-                self.write_maps(variable, maps, frames.as_deref_mut(), out)?;
-                position = address + size;
-            }
-            Ok(())
-        })
+        let blocks = allocate(&mut skeleton, &sizes)?;
+        Ok(Layout { plan, skeleton, blocks })
+    }
+
+    fn stream(
+        &self,
+        Layout { plan, skeleton, blocks }: &Layout,
+        mut frames: Option<&mut Frames>,
+        out: &mut dyn Write,
+    ) -> io::Result<()> {
+        out.write_all(skeleton)?;
+        let mut position = skeleton.len() as u64;
+        for ((variable, maps), block) in self.variables.iter().zip(plan).zip(blocks) {
+            let Block { address, size } = *block;
+            out.write_all(&vec![0; (address - position) as usize])?;
+            self.write_maps(variable, maps, frames.as_deref_mut(), out)?;
+            position = address + size;
+        }
+        Ok(())
     }
 
     fn write_maps(
@@ -307,6 +334,13 @@ impl Dataset<'_> {
     }
 }
 
+/// The file but for its numbers: the maps of each variable, the skeleton, and where the numbers go.
+struct Layout {
+    plan: Vec<Maps>,
+    skeleton: Vec<u8>,
+    blocks: Vec<Block>,
+}
+
 /// The maps of one variable: how many, how long, and which field of the store.
 struct Maps {
     count: usize,
@@ -325,7 +359,7 @@ impl Crs {
     /// a bare EPSG code is looked up.
     fn describe(&self, file: &mut NcFileBuilder, id: VariableId) -> netcdf_writer::Result<()> {
         let code = self.epsg.map(|code| format!("EPSG:{code}"));
-        let known = self.epsg.and_then(crate::raster::well_known_text);
+        let known = self.epsg.and_then(well_known_text);
         let wkt = self.wkt.as_deref().or(known.as_deref());
         let names = [
             ("long_name", Some("coordinate reference system")),
@@ -339,6 +373,12 @@ impl Crs {
             None => Ok(()),
         }
     }
+}
+
+/// Nothing is looked up without the table of codes.
+#[cfg(not(feature = "geo"))]
+fn well_known_text(_epsg: u32) -> Option<String> {
+    None
 }
 
 fn describe<'a>(
@@ -402,7 +442,12 @@ mod tests {
                 ),
                 variable("speed", &["time", "y", "x"], Precision::F32, Values::Stored("speed".into())),
                 variable("bed", &["y", "x"], Precision::F32, Values::Static((0..6).map(f64::from).collect())),
-                variable("edge", &["time", "x"], Precision::F64, Values::Series(vec![vec![1.0; 3]; 3])),
+                variable(
+                    "edge",
+                    &["time", "x"],
+                    Precision::F64,
+                    Values::Series(vec![vec![1.0; 3]; 3].into()),
+                ),
             ],
             crs: Some(Crs { epsg: Some(31287), wkt: None }),
             terrain: Some(&[0.0, f64::NAN, 0.0, 0.0, 0.0, 0.0]),
@@ -460,7 +505,9 @@ mod tests {
         refuse("axis z", &|d| d.variables[2].axes[0] = "z".into());
         refuse("no field h", &|d| d.variables[0].values = Values::Stored("h".into()));
         refuse("1 maps of 6 values", &|d| d.variables[2].values = Values::Static(vec![0.0; 5].into()));
-        refuse("3 maps of 3 values", &|d| d.variables[3].values = Values::Series(vec![vec![0.0; 3]; 2]));
+        refuse("3 maps of 3 values", &|d| {
+            d.variables[3].values = Values::Series(vec![vec![0.0; 3]; 2].into())
+        });
         refuse("does not fit", &|d| d.variables[0].values = Values::Static(vec![0.0; 18].into()));
         refuse("no values", &|d| d.axes[0].values.clear());
         refuse("bed", &|d| d.variables[1].name = "bed".into());

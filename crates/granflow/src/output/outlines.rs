@@ -1,6 +1,7 @@
 //! Outlines: where a map exceeds a threshold, as polygons, and `outlines.geojson` for QGIS.
 
 use super::{Error, whole_file};
+use crate::raster::Raster;
 use geo::{Area, BoundingRect, Contains, Coord, LineString, MultiPolygon, Polygon};
 use geojson::{Feature, FeatureCollection, Geometry, GeometryValue};
 use serde_json::json;
@@ -21,6 +22,13 @@ pub struct Lattice {
     pub dx: f64,
     /// Distance of the rows, negative where the first row is the northernmost.
     pub dy: f64,
+}
+
+/// The centres of a raster's cells.
+impl From<&Raster> for Lattice {
+    fn from(raster: &Raster) -> Lattice {
+        Lattice { columns: raster.columns, x: raster.x(0), y: raster.y(0), dx: raster.cell, dy: raster.cell }
+    }
 }
 
 /// The area where a quantity reaches a threshold.
@@ -80,6 +88,13 @@ pub fn contour(map: &[f64], lattice: Lattice, threshold: f64) -> MultiPolygon<f6
     }
     outer.reverse();
     MultiPolygon::new(outer)
+}
+
+/// The outer rings that enclose more than `least` square units of the map.
+#[must_use]
+pub fn rings(area: &MultiPolygon<f64>, least: f64) -> Vec<Vec<[f64; 2]>> {
+    let large = area.iter().filter(|polygon| polygon.unsigned_area() > least);
+    large.map(|polygon| polygon.exterior().coords().map(|c| [c.x, c.y]).collect()).collect()
 }
 
 /// The edges between neighbouring centres, by their lower centre and whether they run along a row.

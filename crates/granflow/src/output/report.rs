@@ -1,4 +1,4 @@
-//! The HTML pages: `report.html` of a run on terrain and `index.html` of `reproduce` and `verify`.
+//! The HTML pages: `report.html` of a run on terrain and `index.html` of `granflow reproduce`.
 //!
 //! Each is one self-contained page, figures inlined, that prints well and needs no script.
 
@@ -36,18 +36,55 @@ pub struct KeyFigure {
     pub value: String,
 }
 
+impl KeyFigure {
+    /// A number with its unit; a dash for one that does not apply.
+    #[must_use]
+    pub fn number(name: &str, value: Option<f64>, unit: &str) -> KeyFigure {
+        let value = match value.filter(|value| value.is_finite()) {
+            Some(value) => format!("{}{unit}", readable(value)),
+            None => "–".into(),
+        };
+        KeyFigure { name: name.into(), value }
+    }
+}
+
+/// What a report says of a run in numbers and words.
+#[derive(Debug, Clone, PartialEq, Eq, Default)]
+pub struct Findings {
+    /// The rows of the table of key figures.
+    pub key_figures: Vec<KeyFigure>,
+    /// What the user should know before trusting the numbers.
+    pub warnings: Vec<String>,
+}
+
+impl Findings {
+    /// What can be said of a run of any model.
+    #[must_use]
+    pub fn of(summary: &Summary) -> Findings {
+        let figure = KeyFigure::number;
+        let key_figures = vec![
+            figure("Mass at the start", Some(summary.mass_initial), ""),
+            figure("Mass at the end", Some(summary.mass_final), ""),
+            KeyFigure { name: "Ended because".into(), value: summary.stop_reason.to_string() },
+            figure("Simulated time", Some(summary.time), ""),
+            figure("Largest speed", Some(summary.max_speed), ""),
+            figure("Left over the edges", Some(summary.mass_out), ""),
+            figure("Mass error (relative)", Some(summary.mass_error), ""),
+        ];
+        Findings { key_figures, warnings: Vec::new() }
+    }
+}
+
 /// The page of one run.
 #[derive(Debug, Clone, Copy)]
 pub struct Report<'a> {
     /// The run in numbers.
     pub summary: &'a Summary,
-    /// What else belongs into the table of key figures.
-    pub more: &'a [KeyFigure],
-    /// What the user should know before trusting the numbers.
-    pub warnings: &'a [String],
+    /// The table of key figures, and warnings.
+    pub findings: &'a Findings,
     /// The pictures, in order.
     pub figures: &'a [Figure],
-    /// The whole text of the case.
+    /// The text of the case as it was written.
     pub case: &'a str,
     /// The lines of `mass.csv`.
     pub ledger: &'a [Entry],
@@ -77,39 +114,12 @@ pub struct Section {
     pub figures: Vec<Figure>,
 }
 
-/// The key figures of a run on terrain, in SI units, with a dash for what does not apply.
-#[must_use]
-pub fn key_figures(summary: &Summary) -> Vec<KeyFigure> {
-    let figure = |name: &str, value: Option<f64>, unit: &str| KeyFigure {
-        name: name.into(),
-        value: match value.filter(|value| value.is_finite()) {
-            Some(value) => format!("{}{unit}", readable(value)),
-            None => "–".into(),
-        },
-    };
-    let reason = KeyFigure { name: "Ended because".into(), value: summary.stop_reason.to_string() };
-    vec![
-        figure("Volume at the start", Some(summary.mass_initial), " m³"),
-        figure("Volume at the end", Some(summary.mass_final), " m³"),
-        figure("Runout", summary.runout, " m"),
-        figure("Reach angle", summary.reach_angle, "°"),
-        reason,
-        figure("Stopping time", summary.stopping_time, " s"),
-        figure("Simulated time", Some(summary.time), " s"),
-        figure("Largest speed", Some(summary.max_speed), " m/s"),
-        figure("Largest peak pressure", summary.extra("peak_pressure_max"), " kPa"),
-        figure("Share of films", Some(summary.film_share() * 100.0), " %"),
-        figure("Left over the edges", Some(summary.mass_out), " m³"),
-        figure("Mass error (relative)", Some(summary.mass_error), ""),
-    ]
-}
-
 /// Writes `report.html`.
 ///
 /// # Errors
 /// [`Error::Io`] if the page cannot be written or a figure not read.
 pub fn write_report(path: &Path, report: Report) -> Result<(), Error> {
-    let Report { summary, more, warnings, figures, case, ledger } = report;
+    let Report { summary, findings: Findings { key_figures, warnings }, figures, case, ledger } = report;
     let body = html! {
         p.lead {
             (summary.model) ", " (summary.scheme) ", " (summary.cells) " cells, " (summary.steps) " steps, "
@@ -119,7 +129,7 @@ pub fn write_report(path: &Path, report: Report) -> Result<(), Error> {
         h2 { "Key figures" }
         table.key {
             tbody {
-                @for KeyFigure { name, value } in key_figures(summary).iter().chain(more) {
+                @for KeyFigure { name, value } in key_figures {
                     tr { th scope="row" { (name) } td { (value) } }
                 }
             }
@@ -303,10 +313,18 @@ mod tests {
         summary.title = "A <slide> & more".into();
         let ledger: Vec<_> =
             (0..100).map(|step| Entry { step, time: step as f64, ..Entry::default() }).collect();
+        let findings = Findings {
+            key_figures: vec![
+                KeyFigure::number("Volume", Some(8.0), " m³"),
+                KeyFigure::number("Runout", None, " m"),
+                KeyFigure { name: "Ended because".into(), value: summary.stop_reason.to_string() },
+                KeyFigure { name: "Cells steeper than 60°".into(), value: "746".into() },
+            ],
+            warnings: vec!["the film holds 0.6 %".into()],
+        };
         let report = Report {
             summary: &summary,
-            more: &[KeyFigure { name: "Cells steeper than 60°".into(), value: "746".into() }],
-            warnings: &["the film holds 0.6 %".into()],
+            findings: &findings,
             figures: &figures,
             case: "x = \"<b>\"",
             ledger: &ledger,

@@ -7,6 +7,9 @@ use std::fs;
 use std::io;
 use std::path::Path;
 
+/// A larger share of the mass in films is worth a warning; see [`Summary::film_share`].
+pub const FILM_SHARE: f64 = 0.005;
+
 /// Why a run ended; `summary.json` holds it in snake case, as in "at_rest".
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
@@ -48,7 +51,7 @@ impl fmt::Display for StopReason {
 pub struct Summary {
     /// The case's title.
     pub title: String,
-    /// The model, "savage_hutter" or "hadeler_kuttler".
+    /// The model's name, as in the case file.
     pub model: String,
     /// The scheme's name.
     pub scheme: String,
@@ -121,7 +124,7 @@ impl Summary {
         self.extra.get(key)?.as_f64()
     }
 
-    /// Film volume by final mass, the share that a warning is due for above 0.5 %.
+    /// Film volume by final mass; a warning is due above [`FILM_SHARE`].
     #[must_use]
     pub fn film_share(&self) -> f64 {
         if self.film_volume == 0.0 { 0.0 } else { self.film_volume / self.mass_final }

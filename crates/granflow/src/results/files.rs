@@ -1,65 +1,38 @@
 //! All files that a case asks for, made of a finished run.
 
-use super::story::Story;
-use super::{
-    Finished, Under, animation, chute_figures, drawing, mountain_figures, outlines, rasters, table_figures,
-};
+use super::{FilesError, Finished};
 use crate::case::FileKind;
-use crate::output::figures::PictureError;
+use crate::model::Plane;
+use crate::output;
 use crate::output::report::{self, Report};
-use crate::output::summary::StopReason;
-use crate::output::{self, csv, vtk};
-use crate::raster::RasterError;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
-/// A larger share of the mass in films is worth a warning.
-pub const FILM_SHARE: f64 = 0.005;
-
-/// Why a file could not be made of a run.
-#[derive(Debug, thiserror::Error)]
-pub enum FilesError {
-    /// A file of the results could not be read or written.
-    #[error(transparent)]
-    Output(#[from] output::Error),
-    /// A figure could not be drawn or written.
-    #[error(transparent)]
-    Figure(#[from] PictureError),
-    /// A raster could not be written.
-    #[error(transparent)]
-    Raster(#[from] RasterError),
-    /// There is no such result.
-    #[error("{}: cannot open: {source}; `granflow run CASE.toml` writes a result.nc", path.display())]
-    Missing {
-        /// The file.
-        path: PathBuf,
-        /// What the system said.
-        source: std::io::Error,
-    },
-    /// The file is no result of granflow.
-    #[error("{}: this is no result of granflow: {problem}; give the result.nc of a run", path.display())]
-    Foreign {
-        /// The file.
-        path: PathBuf,
-        /// What is wrong with it.
-        problem: String,
-    },
-}
-
-impl Story<'_> {
-    /// Draw the standard figures into `folder`.
-    ///
-    /// # Errors
-    /// [`FilesError`] naming the figure or the file.
-    pub fn draw(&self, folder: &Path) -> Result<Vec<report::Figure>, FilesError> {
-        let drawings = match (&self.plane.under, self.plane.y.is_empty()) {
-            (Under::Mountain(_), _) => mountain_figures::mountain(self),
-            (Under::Chute, true) => chute_figures::line(self),
-            (Under::Chute, false) => chute_figures::plane(self),
-            (Under::Table(table), true) => table_figures::line(self, table),
-            (Under::Table(table), false) => table_figures::plane(self, table),
+/// Can all these kinds of files be made by this program, of a run on this plane?
+///
+/// # Errors
+/// [`FilesError::Kind`] naming the first that cannot, and what helps.
+pub fn check_kinds(files: &[FileKind], plane: &Plane) -> Result<(), FilesError> {
+    for &kind in files {
+        let (needed, built) = match kind {
+            FileKind::Figures | FileKind::Animation | FileKind::Report => {
+                ("figures", cfg!(feature = "figures"))
+            }
+            FileKind::Geotiff | FileKind::Vector => ("geo", cfg!(feature = "geo")),
+            FileKind::Netcdf | FileKind::Csv | FileKind::Vtk => continue,
         };
-        Ok(drawing::save_all(&drawings, folder)?)
+        if !built {
+            let problem =
+                format!("this program was built without `{needed}`; build it with --features {needed}");
+            return Err(FilesError::Kind { kind, problem });
+        }
+        #[cfg(feature = "figures")]
+        if needed == "figures" && plane.model().pictures.is_none() {
+            let problem = format!("nothing draws the model {}; give it pictures", plane.model().name);
+            return Err(FilesError::Kind { kind, problem });
+        }
     }
+    let _ = plane;
+    Ok(())
 }
 
 impl Finished {
@@ -88,142 +61,66 @@ impl Finished {
     /// # Errors
     /// [`FilesError`] naming the file.
     pub fn write_files(&self) -> Result<Vec<PathBuf>, FilesError> {
-        let asked = |kind| self.files.contains(&kind);
-        let mut written = Vec::new();
-        let drawn = asked(FileKind::Figures) || asked(FileKind::Report);
-        let story = (drawn || asked(FileKind::Animation)).then(|| Story::of(self)).transpose()?;
-        let ((figures, rasters), outlines) = rayon::join(
-            || {
-                rayon::join(
-                    || match story.as_ref().filter(|_| drawn) {
-                        Some(story) => story.draw(&self.figures()),
-                        None => Ok(Vec::new()),
-                    },
-                    || if asked(FileKind::Geotiff) { rasters::write(self) } else { Ok(Vec::new()) },
-                )
-            },
-            || if asked(FileKind::Vector) { outlines::write(self) } else { Ok(None) },
-        );
+        check_kinds(&self.files, &self.plane)?;
+        let drawings = Drawings::of(self)?;
+        let ((figures, rasters), outlines) =
+            rayon::join(|| rayon::join(|| drawings.figures(self), || self.rasters()), || self.outlines());
         let figures = figures?;
-        written.extend(figures.iter().map(|figure| figure.path.clone()));
+        let mut written: Vec<PathBuf> = figures.iter().map(|figure| figure.path.clone()).collect();
         written.extend(rasters?);
         written.extend(outlines?);
-        if asked(FileKind::Csv) {
+        if self.asked(FileKind::Csv) {
             written.extend(self.write_csv()?);
         }
-        if asked(FileKind::Vtk) {
+        if self.asked(FileKind::Vtk) {
             written.extend(self.write_vtk()?);
         }
-        if let Some(story) = story.as_ref().filter(|_| asked(FileKind::Animation)) {
-            written.push(animation::write(self, story)?);
-        }
-        if asked(FileKind::Report) {
+        written.extend(drawings.animation(self)?);
+        if self.asked(FileKind::Report) {
             written.push(self.write_report(&figures)?);
         }
         Ok(written)
     }
 
-    /// `profiles.csv`: every instant of a line; `maps.csv`: the summary maps of a plane, a line per cell. What lies on the
-    /// nodes of a table goes to `profiles_node.csv` and `maps_node.csv`.
-    fn write_csv(&self) -> Result<Vec<PathBuf>, output::Error> {
-        let mut frames = self.frames.again()?;
-        let mut written = Vec::new();
-        let mut places = vec![("", &self.plane.x, &self.plane.y)];
-        let (table, series) = (self.plane.as_table(), self.plane.series());
-        places.extend(table.map(|table| ("_node", &table.x_node, &table.y_node)));
-        for (at, x, y) in places {
-            let kind = if y.is_empty() { "profiles" } else { "maps" };
-            let path = self.directory.join(format!("{kind}{at}.csv"));
-            if y.is_empty() {
-                csv::write(&path, (&format!("x{at}"), x), &mut frames)?;
-            } else {
-                let mut maps: Vec<(&str, Vec<f64>)> = Vec::new();
-                if table.is_some() {
-                    // Of a pile that grows the last instant is the result; an avalanche has `deposit` among its maps.
-                    let last = frames.times().len().saturating_sub(1);
-                    for (k, field) in series.iter().enumerate().filter(|(_, f)| f.length == x.len() * y.len())
-                    {
-                        maps.push((&field.name, frames.read(last, k)?));
-                    }
-                }
-                maps.extend(self.fixed(x.len() * y.len()));
-                write_maps(&path, at, (x, y), &maps)?;
-            }
-            written.push(path);
-        }
-        Ok(written)
+    fn asked(&self, kind: FileKind) -> bool {
+        self.files.contains(&kind)
     }
 
-    /// The maps that do not change, with so many values.
-    fn fixed(&self, length: usize) -> Vec<(&str, Vec<f64>)> {
-        let height = self.plane.as_table().map(|table| ("table_height", &table.height));
-        let maps = self.maps.iter().map(|(name, map)| (*name, map));
-        let all = height.into_iter().chain(maps);
-        all.filter(|(_, map)| map.len() == length).map(|(name, map)| (name, map.clone())).collect()
+    #[cfg(feature = "geo")]
+    fn rasters(&self) -> Result<Vec<PathBuf>, FilesError> {
+        if self.asked(FileKind::Geotiff) { Ok(super::rasters::write(self)?) } else { Ok(Vec::new()) }
     }
 
-    /// `result.pvd` and `vtk/frame_0000.vti`, ...
-    fn write_vtk(&self) -> Result<Vec<PathBuf>, output::Error> {
-        let mut frames = self.frames.again()?;
-        let spacing = |c: &[f64]| c.get(1).map(|second| second - c[0]);
-        let (x, y, table) = (&self.plane.x, &self.plane.y, self.plane.as_table());
-        let dx = spacing(x).unwrap_or(1.0);
-        let dy = spacing(y).unwrap_or(dx);
-        let low = |c: &[f64], d: f64| c.first().map_or(0.0, |first| first - 0.5 * d);
-        let image = vtk::Image {
-            cells: [x.len(), y.len().max(1)],
-            origin: [low(x, dx), low(y, dy)],
-            spacing: [dx, dy],
+    /// `outlines.geojson`, where the model outlines anything.
+    #[cfg(feature = "geo")]
+    fn outlines(&self) -> Result<Option<PathBuf>, FilesError> {
+        let Some(raster) = self.plane.domain.raster().filter(|_| self.asked(FileKind::Vector)) else {
+            return Ok(None);
         };
-        let (mut written, mut index) = (Vec::new(), Vec::new());
-        for (k, time) in frames.times().to_vec().into_iter().enumerate() {
-            let names: Vec<String> = frames.fields().iter().map(|field| field.name.clone()).collect();
-            let mut fields = Vec::new();
-            for (field, name) in names.iter().enumerate() {
-                fields.push((name.as_str(), frames.read(k, field)?));
-            }
-            if let Some(table) = table {
-                fields.extend(self.fixed(table.nodes()));
-                fields.extend(self.fixed(x.len() * y.len().max(1)));
-                if y.is_empty() {
-                    let line = fields.iter_mut().filter(|(_, values)| values.len() == x.len() + 1);
-                    line.for_each(|(_, values)| *values = values.repeat(2)); // a row of cells has two rows of nodes
-                }
-            }
-            let fields: Vec<(&str, &[f64])> = fields.iter().map(|(name, v)| (*name, v.as_slice())).collect();
-            let name = format!("vtk/frame_{k:04}.vti");
-            let path = self.directory.join(&name);
-            vtk::write_frame(&path, image, frames.precision(), &fields)?;
-            written.push(path);
-            index.push((time, name));
-        }
-        let collection = self.directory.join("result.pvd");
-        vtk::write_collection(&collection, &index)?;
-        written.push(collection);
-        Ok(written)
+        let path = self.directory.join("outlines.geojson");
+        let epsg = raster.crs.as_ref().and_then(|crs| crs.epsg);
+        output::outlines::write(&path, &self.plane.domain.outlines(&self.maps), epsg)?;
+        Ok(Some(path))
+    }
+
+    #[cfg(not(feature = "geo"))]
+    fn rasters(&self) -> Result<Vec<PathBuf>, FilesError> {
+        Ok(Vec::new())
+    }
+
+    #[cfg(not(feature = "geo"))]
+    fn outlines(&self) -> Result<Option<PathBuf>, FilesError> {
+        Ok(None)
     }
 
     fn write_report(&self, figures: &[report::Figure]) -> Result<PathBuf, output::Error> {
-        let summary = &self.summary;
-        let mut warnings = Vec::new();
-        if !matches!(summary.stop_reason, StopReason::AtRest | StopReason::Steady) {
-            warnings.push(format!(
-                "the run ended before the mass was at rest ({}); what is called deposit is the thickness at the end.",
-                summary.stop_reason
-            ));
-        }
-        if summary.film_share() > FILM_SHARE {
-            let share = 100.0 * summary.film_share();
-            warnings
-                .push(format!("{share:.2} % of the mass is held in films thinner than {:e} m.", self.film));
-        }
         let path = self.directory.join("report.html");
+        let findings = (self.plane.model().findings)(&self.summary, self.film);
         let report = Report {
-            summary,
-            more: &[],
-            warnings: &warnings,
+            summary: &self.summary,
+            findings: &findings,
             figures,
-            case: &self.case,
+            case: &self.case_text,
             ledger: &self.ledger,
         };
         report::write_report(&path, report)?;
@@ -231,23 +128,47 @@ impl Finished {
     }
 }
 
-/// A line per place and a column per map; NaN stands as an empty cell.
-fn write_maps(
-    path: &Path,
-    at: &str,
-    (x, y): (&[f64], &[f64]),
-    maps: &[(&str, Vec<f64>)],
-) -> Result<(), output::Error> {
-    output::whole_file(path, |out| {
-        let names: Vec<&str> = maps.iter().map(|(name, _)| *name).collect();
-        writeln!(out, "x{at},y{at},{}", names.join(","))?;
-        for k in 0..x.len() * y.len() {
-            write!(out, "{:?},{:?}", x[k % x.len()], y[k / x.len()])?;
-            for value in maps.iter().map(|(_, map)| map[k]) {
-                if value.is_nan() { write!(out, ",")? } else { write!(out, ",{value:?}")? }
-            }
-            writeln!(out)?;
+/// The run as its figures see it, where the case asks for any.
+#[cfg(feature = "figures")]
+struct Drawings<'r>(Option<super::Story<'r>>);
+
+#[cfg(feature = "figures")]
+impl<'r> Drawings<'r> {
+    fn of(run: &'r Finished) -> Result<Self, FilesError> {
+        let kinds = [FileKind::Figures, FileKind::Report, FileKind::Animation];
+        let wanted = kinds.into_iter().any(|kind| run.asked(kind));
+        Ok(Drawings(wanted.then(|| super::Story::of(run)).transpose()?))
+    }
+
+    fn figures(&self, run: &Finished) -> Result<Vec<report::Figure>, FilesError> {
+        let drawn = run.asked(FileKind::Figures) || run.asked(FileKind::Report);
+        match self.0.as_ref().filter(|_| drawn) {
+            Some(story) => story.draw(&run.figures()),
+            None => Ok(Vec::new()),
         }
-        Ok(())
-    })
+    }
+
+    fn animation(&self, run: &Finished) -> Result<Option<PathBuf>, FilesError> {
+        let story = self.0.as_ref().filter(|_| run.asked(FileKind::Animation));
+        story.map(|story| super::animation::write(run, story)).transpose()
+    }
+}
+
+/// Nothing is drawn; [`check_kinds`] has refused a case that asks for it.
+#[cfg(not(feature = "figures"))]
+struct Drawings;
+
+#[cfg(not(feature = "figures"))]
+impl Drawings {
+    fn of(_run: &Finished) -> Result<Self, FilesError> {
+        Ok(Drawings)
+    }
+
+    fn figures(&self, _run: &Finished) -> Result<Vec<report::Figure>, FilesError> {
+        Ok(Vec::new())
+    }
+
+    fn animation(&self, _run: &Finished) -> Result<Option<PathBuf>, FilesError> {
+        Ok(None)
+    }
 }

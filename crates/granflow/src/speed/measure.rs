@@ -104,7 +104,7 @@ pub fn median(values: impl IntoIterator<Item = f64>) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::simulation::{Instructions, Traffic};
+    use crate::simulation::{SimdLevel, Traffic};
 
     /// Takes 2 ms a step and 300 ms to restart after three.
     struct Clockwork(usize);
@@ -129,7 +129,7 @@ mod tests {
         fn traffic(&self) -> Traffic {
             Traffic { read: 0.0, written: 0.0, allocated: 0.0 }
         }
-        fn use_instructions(&mut self, _instructions: Instructions) {}
+        fn use_simd(&mut self, _instructions: SimdLevel) {}
     }
 
     #[test]

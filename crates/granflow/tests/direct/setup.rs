@@ -7,7 +7,6 @@ use granflow::hadeler_kuttler::scheme::{FIRST_ORDER, HadelerKuttler};
 use granflow::hadeler_kuttler::table::{Edge, Table};
 use granflow::scheme::{Boundary, Side};
 use granflow::simulation::{Simulation, StepSize};
-use granflow::time::EULER;
 
 pub const F: f64 = 0.5;
 pub const ALL: [[bool; 2]; 2] = [[true; 2]; 2];
@@ -76,13 +75,13 @@ impl<const D: usize> Setup<D> {
                 cells: self.table.nodes(),
                 origin: [0.0; D],
                 size: self.size,
-                boundary: [[Boundary::Nothing; 2]; D],
+                boundary: [[Boundary::Absorbing; 2]; D],
             },
-            EULER,
             step,
             ground,
             pile,
         )
+        .unwrap()
     }
     /// Largest change of u and of v in one step.
     pub fn one_step(&self) -> [f64; 2] {

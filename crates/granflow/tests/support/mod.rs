@@ -9,7 +9,6 @@ use granflow::savage_hutter::friction::{Coulomb, Law};
 use granflow::savage_hutter::ground::{Bed, Chute, Terrain};
 use granflow::scheme::Boundary;
 use granflow::simulation::{Simulation, StepSize};
-use granflow::time::{EULER, SSP_RK2, Stages};
 
 /// Gravity of the runs in SI units.
 pub const GRAVITY: f64 = 9.81;
@@ -33,12 +32,6 @@ impl Order {
         match self {
             Order::First => Balanced::first(Law::Coulomb(Coulomb { mu }), film),
             Order::Second => Balanced::second(Law::Coulomb(Coulomb { mu }), film),
-        }
-    }
-    pub fn stages(self) -> Stages {
-        match self {
-            Order::First => EULER,
-            Order::Second => SSP_RK2,
         }
     }
     /// The step of an ordinary run.
@@ -117,11 +110,11 @@ pub fn run<const D: usize, B: Bed<D, f64>>(
     Simulation::new(
         order.scheme(mu, film),
         grid,
-        order.stages(),
         step,
         |index| grounds[number(index)],
         |index| start(grid.centre(index), &grounds[number(index)]),
     )
+    .unwrap()
 }
 
 /// A run on a plane.

@@ -1,14 +1,9 @@
 //! One example run by one scheme, in memory, and what is measured on it.
 
-use granflow::case::{Case, NoFiles};
-use granflow::hadeler_kuttler::scheme::HadelerKuttler;
-use granflow::kernels::Kernel;
-use granflow::results::Plane;
-use granflow::savage_hutter::Flow;
+use granflow::Case;
+use granflow::case::Kind;
+use granflow::run::Run;
 use granflow::savage_hutter::exact::Riemann;
-use granflow::savage_hutter::ground::Bed;
-use granflow::setup::{Sand, Scene, Visit};
-use granflow::simulation::Simulation;
 
 use super::examples::{EXAMPLES, Example, Id, SCHEMES};
 use crate::failure::Failure;
@@ -97,10 +92,12 @@ impl Computed {
             .chain([format!("scheme.name={}", scheme.0)])
             .collect();
         let case = Case::parse_with(example.case, &format!("{}.toml", example.name), &overrides)?;
-        let checked = case.check(&NoFiles)?;
-        let run = checked.run;
-        let scene = Scene::load(&run, checked.kind).map_err(granflow::run::RunError::Setup)?;
-        Ok(scene.simulate(&run, Collect { example, scheme, steps: run.ends.steps.unwrap_or(0) }))
+        let checked = case.check()?;
+        let Kind::Chute(plan) = checked.kind() else { unreachable!("the examples are flows down chutes") };
+        let (dx, beta) = (plan.grid.x.width(), plan.beta(0));
+        let steps = checked.plan().ends.steps.unwrap_or(0);
+        let mut run = checked.start()?;
+        Ok(collect(example, scheme, &mut *run, Scales { steps, dx, beta }))
     }
 
     /// The first frame.
@@ -194,71 +191,62 @@ impl Runs {
     }
 }
 
-struct Collect {
-    example: &'static Example,
-    scheme: (&'static str, &'static str),
-    steps: u64,
+/// The state of a run as it stands.
+fn frame(run: &dyn Run) -> Frame {
+    let field = |name| run.field(name).map_or_else(Vec::new, |view| view.iter().collect());
+    Frame { step: run.steps(), time: run.time(), h: field("thickness"), u: field("velocity_x") }
 }
 
-impl Visit for Collect {
-    type Output = Computed;
+/// What the case says of a run.
+struct Scales {
+    steps: u64,
+    dx: f64,
+    beta: f64,
+}
 
-    fn visit_sand<const D: usize>(
-        self,
-        _sand: &Sand<D>,
-        _simulation: Simulation<D, HadelerKuttler>,
-    ) -> Computed {
-        unreachable!("the examples are flows down chutes")
+/// Steps a run of an example for `steps` steps and keeps what is measured on it.
+fn collect(
+    example: &'static Example,
+    scheme: (&'static str, &'static str),
+    run: &mut dyn Run,
+    Scales { steps, dx, beta }: Scales,
+) -> Computed {
+    let before = run.totals().volume;
+    let lowest_of = |frame: &Frame| frame.h.iter().copied().fold(f64::INFINITY, f64::min);
+    let start = frame(run);
+    let (mut lowest, mut negative, mut failure) = (lowest_of(&start), None, None);
+    let mut frames = vec![start.clone()];
+    let (mut last, mut volume, mut out) = (start, before, 0.0);
+    while run.steps() < steps {
+        if let Err(error) = run.step(f64::INFINITY) {
+            failure = Some(error.to_string());
+            break;
+        }
+        last = frame(run);
+        (volume, out) = (run.totals().volume, run.stepper().outflow().iter().sum());
+        lowest = lowest.min(lowest_of(&last));
+        if lowest < 0.0 && negative.is_none() {
+            negative = Some(last.clone());
+        }
+        if last.step.is_multiple_of(example.every) {
+            frames.push(last.clone());
+        }
     }
-
-    fn visit<const D: usize, S>(self, _plane: Plane, mut simulation: Simulation<D, S>) -> Computed
-    where
-        S: Kernel<D, State = Flow<D, f64>>,
-        S::Ground: Bed<D, f64>,
-    {
-        let grid = *simulation.grid();
-        let frame = |simulation: &Simulation<D, S>| {
-            let cells = simulation.collect(|cell| (cell.state.h, cell.state.velocity()[0]));
-            let (h, u) = cells.into_iter().unzip();
-            Frame { step: simulation.step(), time: simulation.time(), h, u }
-        };
-        let start = frame(&simulation);
-        let before = simulation.totals().volume;
-        let lowest_of = |frame: &Frame| frame.h.iter().copied().fold(f64::INFINITY, f64::min);
-        let (mut lowest, mut negative, mut failure) = (lowest_of(&start), None, None);
-        let mut frames = vec![start.clone()];
-        let (mut last, mut volume, mut out) = (start, before, 0.0);
-        while simulation.step() < self.steps {
-            if let Err(error) = simulation.advance(f64::INFINITY) {
-                failure = Some(error.to_string());
-                break;
-            }
-            last = frame(&simulation);
-            (volume, out) = (simulation.totals().volume, simulation.out().iter().sum());
-            lowest = lowest.min(lowest_of(&last));
-            if lowest < 0.0 && negative.is_none() {
-                negative = Some(last.clone());
-            }
-            if last.step.is_multiple_of(self.example.every) {
-                frames.push(last.clone());
-            }
-        }
-        if frames.last().is_none_or(|frame| frame.step != last.step) {
-            frames.push(last);
-        }
-        Computed {
-            example: self.example,
-            scheme: self.scheme,
-            x: (0..grid.count()).map(|n| grid.centre(grid.index(n))[0]).collect(),
-            dx: grid.size[0],
-            beta: simulation.ground([0; D]).beta(0),
-            frames,
-            mass_change: (volume + out - before) / before,
-            mass_growth: (volume - before) / before,
-            lowest,
-            negative,
-            failure,
-            at_rest: simulation.at_rest(),
-        }
+    if frames.last().is_none_or(|frame| frame.step != last.step) {
+        frames.push(last);
+    }
+    Computed {
+        example,
+        scheme,
+        x: run.plane().x.clone(),
+        dx,
+        beta,
+        frames,
+        mass_change: (volume + out - before) / before,
+        mass_growth: (volume - before) / before,
+        lowest,
+        negative,
+        failure,
+        at_rest: run.stepper().at_rest(),
     }
 }

@@ -3,8 +3,8 @@
 use granflow::hadeler_kuttler::exact;
 use granflow::hadeler_kuttler::scheme::{FIRST_ORDER, HadelerKuttler, SECOND_ORDER};
 use granflow::hadeler_kuttler::table::Table;
+use granflow::models::hadeler_kuttler::run::site::Site;
 use granflow::simulation::{Simulation, StepSize};
-use granflow::site::Site;
 
 use super::super::parallel;
 use super::{LAMBDA, SCHEMES, SOURCE, adaptive, failed};
@@ -80,6 +80,7 @@ fn simulation(scheme: HadelerKuttler, lambda: f64, start: &Layers) -> Simulation
     let h = 1.0 / n as f64;
     let site = Site::level(Table::rectangle([n], [[true; 2]]), [h]);
     site.simulation(scheme, StepSize::Fixed(lambda * h), &vec![SOURCE; n], (&start.u, &start.v))
+        .expect("the scheme takes the paper's steps")
 }
 
 /// From an empty table to a time.

@@ -4,9 +4,9 @@ use granflow::hadeler_kuttler::direct::Equilibrium;
 use granflow::hadeler_kuttler::scheme::{FIRST_ORDER, HadelerKuttler};
 use granflow::hadeler_kuttler::table::{Edge, Table};
 use granflow::hadeler_kuttler::{Pile as State, exact};
+use granflow::models::hadeler_kuttler::run::site::Site;
 use granflow::scheme::Scheme;
 use granflow::simulation::{Simulation, StepSize};
-use granflow::site::Site;
 
 use super::super::parallel;
 use super::{SCHEMES, SOURCE, failed};
@@ -14,7 +14,7 @@ use crate::failure::Failure;
 
 /// Nine tenths of the step that eqs. 26, 27 allow.
 fn step(scheme: HadelerKuttler) -> StepSize {
-    StepSize::Courant(0.9 * Scheme::<2, f64>::most_courant(&scheme))
+    StepSize::Courant(0.9 * Scheme::<2, f64>::max_courant(&scheme))
 }
 
 /// Cells along a side in the table of errors; the paper's has a fourth, 160.
@@ -69,7 +69,8 @@ fn square(n: usize, scheme: HadelerKuttler) -> Result<Errors, Failure> {
     let all = [[true; 2]; 2];
     let site = Site::level(Table::rectangle([n; 2], all), [h; 2]);
     let empty = (vec![0.0; (n + 1) * (n + 1)], vec![0.0; n * n]);
-    let mut run = site.simulation(scheme, step(scheme), &vec![SOURCE; n * n], (&empty.0, &empty.1));
+    let mut run =
+        site.simulation(scheme, step(scheme), &vec![SOURCE; n * n], (&empty.0, &empty.1)).map_err(failed)?;
     while run.time() < END {
         run.advance(END).map_err(failed)?;
     }
@@ -174,7 +175,8 @@ impl Pile {
             .collect();
         let direct = site.equilibrium(&source).map_err(failed)?;
         let empty = (vec![0.0; (n + 1) * (n + 1)], vec![0.0; n * n]);
-        let mut run = site.simulation(FIRST_ORDER, step(FIRST_ORDER), &source, (&empty.0, &empty.1));
+        let mut run =
+            site.simulation(FIRST_ORDER, step(FIRST_ORDER), &source, (&empty.0, &empty.1)).map_err(failed)?;
         let mut drift = [f64::INFINITY; 2];
         while run.time() < LONGEST && drift.iter().any(|rate| *rate > STEADY) {
             run.advance(LONGEST).map_err(failed)?;

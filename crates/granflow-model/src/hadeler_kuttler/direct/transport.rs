@@ -4,11 +4,11 @@
 //! v of the lower one: each cell's own slopes decide where it sends sand. So the equations are triangular, cells being
 //! taken after those that send to them. The coefficients are the scheme's own flux for v = 1 on one side.
 
-use super::super::scheme::{Edges, FIRST_ORDER};
+use super::super::scheme::{FIRST_ORDER, FaceStates};
 use super::super::table::Table;
 use super::super::{Ground, Pile};
 use super::Unsteady;
-use crate::scheme::{Cell, Scheme, Spacing, Window};
+use crate::scheme::{Cell, Scheme, Spacing, Stencil};
 use alloc::vec;
 use alloc::vec::Vec;
 
@@ -29,7 +29,7 @@ struct Even<'a, const D: usize> {
     poured: bool,
 }
 
-impl<const D: usize> Window<D, f64, Pile<f64>, Ground<D, f64>> for Even<'_, D> {
+impl<const D: usize> Stencil<D, f64, Pile<f64>, Ground<D, f64>> for Even<'_, D> {
     #[inline(always)]
     fn at(&self, offset: [isize; D]) -> Cell<Pile<f64>, Ground<D, f64>> {
         let Slope { table, surface, source, .. } = self.slope;
@@ -57,8 +57,12 @@ struct Face {
 }
 
 /// The face between two cells, each poured on, rolling and empty.
-fn meet<const D: usize>(axis: usize, below: &[Edges<D, f64>; 3], above: &[Edges<D, f64>; 3]) -> Face {
-    let flux = |low: &Edges<D, f64>, high: &Edges<D, f64>| FIRST_ORDER.flux(axis, low, high);
+fn meet<const D: usize>(
+    axis: usize,
+    below: &[FaceStates<D, f64>; 3],
+    above: &[FaceStates<D, f64>; 3],
+) -> Face {
+    let flux = |low: &FaceStates<D, f64>, high: &FaceStates<D, f64>| FIRST_ORDER.flux(axis, low, high);
     Face {
         below: flux(&below[1], &above[2]),
         above: flux(&below[2], &above[1]),
@@ -82,7 +86,7 @@ pub(super) struct Rolling<const D: usize> {
 }
 
 impl<const D: usize> Slope<'_, D> {
-    fn edges(&self, place: usize) -> [Edges<D, f64>; 3] {
+    fn edges(&self, place: usize) -> [FaceStates<D, f64>; 3] {
         let spacing = Spacing::new(self.size);
         [(0.0, true), (1.0, false), (0.0, false)]
             .map(|(v, poured)| FIRST_ORDER.reconstruct(&Even { slope: self, place, spacing, v, poured }, &()))

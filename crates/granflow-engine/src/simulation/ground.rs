@@ -1,0 +1,94 @@
+//! What follows from the grounds: outlets, sources, tiles that see one ground only.
+
+use super::state::Simulation;
+use crate::boundary;
+use crate::grid::GHOSTS;
+use crate::tiles::{OutletFace, Tile};
+use granflow_model::real::CompensatedSum;
+use granflow_model::scheme::{Boundary, Components, Scheme};
+
+impl<const D: usize, S: Scheme<D, f64>> Simulation<D, S> {
+    /// Volume per time that the grounds pour in.
+    fn supplied(&self) -> f64 {
+        let mut sum = CompensatedSum::default();
+        for number in 0..self.grid.count() {
+            sum.add(self.scheme.source_rate(&self.ground(self.grid.index(number))));
+        }
+        sum.value() * self.grid.measure()
+    }
+
+    /// Note what follows from the grounds: the supply, the outlets, and where the ground is everywhere the same.
+    pub(super) fn rebuild_ground_cache(&mut self) {
+        self.supply = self.supplied();
+        self.outlets.clear();
+        self.with_outlets.clear();
+        for number in 0..self.tiles.len() {
+            let from = self.outlets.len();
+            let Tile { columns, rows, .. } = self.tiles[number];
+            for j in rows[0]..rows[1] {
+                for i in columns[0]..columns[1] {
+                    self.find_outlets([i, j]);
+                }
+            }
+            // Of no use where a ground is kept in single precision: see `sweep::strip`.
+            let uniform = S::Ground::F32_MASK == 0 && self.is_uniform(columns, rows);
+            let tile = &mut self.tiles[number];
+            (tile.outlets, tile.uniform) = (from..self.outlets.len(), uniform);
+            if !tile.outlets.is_empty() {
+                self.with_outlets.push(number as u32);
+            }
+        }
+    }
+
+    /// Is the ground the same bit for bit in the cells of a tile and all that they see?
+    fn is_uniform(&self, columns: [usize; 2], rows: [usize; 2]) -> bool {
+        let margin = self.layout.margin as isize;
+        let start = |j: isize| self.layout.place(columns[0] as isize - GHOSTS as isize, j);
+        let width = columns[1] - columns[0] + 2 * GHOSTS;
+        self.grounds.is_uniform((rows[0] as isize - margin..rows[1] as isize + margin).map(start), width)
+    }
+
+    /// Note the faces of a cell that lead out of the domain.
+    fn find_outlets(&mut self, cell: [usize; 2]) {
+        let place = self.layout.place(cell[0] as isize, cell[1] as isize);
+        let here: S::Ground = self.grounds.get(place);
+        if self.scheme.is_nodata(&here) {
+            return;
+        }
+        for axis in 0..D {
+            for side in 0..2 {
+                let ends = cell[axis] == if side == 0 { 0 } else { self.grid.cells[axis] - 1 };
+                if ends && self.grid.boundary[axis][side] == Boundary::Periodic {
+                    continue;
+                }
+                let step = self.layout.step(axis);
+                let there = self.grounds.get(if side == 0 { place - step } else { place + step });
+                let way = 2 * axis + side;
+                if let Some(outlet) = if ends { Some(way) } else { self.scheme.outlet(&here, &there, way) } {
+                    let cell = cell.map(|k| k as u32);
+                    self.outlets.push(OutletFace {
+                        cell,
+                        axis: axis as u8,
+                        side: side as u8,
+                        outlet: outlet as u8,
+                    });
+                }
+            }
+        }
+    }
+
+    /// Give every cell the ground that `change` makes of its index and its present one, and wake all.
+    pub fn change_grounds(&mut self, change: impl Fn([usize; D], S::Ground) -> S::Ground) {
+        for number in 0..self.grid.count() {
+            let index = self.grid.index(number);
+            let place = self.place(index);
+            let ground = self.grounds.get(place);
+            self.grounds.set(place, change(index, ground));
+        }
+        let (grid, layout, scheme) = (&self.grid, &self.layout, &self.scheme);
+        boundary::fill(&mut self.grounds, grid, layout, |axis, g| scheme.mirror_ground(axis, &g));
+        self.rebuild_ground_cache();
+        self.wake_all();
+        self.outdated.fill(true);
+    }
+}

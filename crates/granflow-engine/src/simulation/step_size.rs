@@ -1,0 +1,10 @@
+//! How long a step is.
+
+/// How long a step is.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum StepSize {
+    /// The same dt every step.
+    Fixed(f64),
+    /// dt = courant / max over cells of [`Scheme::rate`].
+    Courant(f64),
+}

@@ -1,0 +1,107 @@
+//! One fused sweep over the tiles that are awake, on any number of threads and lanes with the same result bit for bit.
+//!
+//! A tile sleeps while all cells that a step reaches it from, its own and those of its neighbours that are near it, rested and
+//! did not change in the last step: computing it would give the numbers that it holds. Each tile is computed by one thread, reads
+//! only the old field and writes only its own cells; sums are taken per tile and added in the order of the tiles.
+
+mod plan;
+mod reducer;
+mod scratch;
+mod strip;
+
+use crate::disjoint::DisjointSlice;
+use crate::lanes::{SimdContext, SimdKernel, SimdVector};
+use crate::tiles::{TileBlock, TileStats};
+use granflow_model::scheme::{Components, Scheme, SchemeVisitor};
+pub use plan::{Output, Sweep};
+use rayon::prelude::*;
+use scratch::Workspace;
+use strip::Targets;
+
+impl Sweep<'_> {
+    /// Compute the tiles that are awake.
+    pub fn run<const D: usize, S: Scheme<D, f64>>(&self, scheme: &S, output: Output) {
+        const {
+            let masks = <S::State as Components<f64>>::F32_MASK | <S::State as Components<f64>>::UNIFORM_MASK;
+            assert!(masks == 0, "a state is kept in double precision in every cell");
+        }
+        let Output { to, maps, stats, changes } = output;
+        let tracked = tracked::<D, S>();
+        // The inner loops trust these lengths.
+        assert!(to.holds::<S::State>(&self.layout) && self.from.holds::<S::State>(&self.layout));
+        assert!(self.grounds.holds::<S::Ground>(&self.layout));
+        assert!(maps.as_ref().is_none_or(|maps| maps.holds(&self.layout)));
+        let mut arrays = to.arrays_mut();
+        let targets = Targets {
+            to: std::array::from_fn(|_| arrays.next().map(DisjointSlice::new)),
+            maps: maps.map(|maps| maps.slices()),
+        };
+        let stats = DisjointSlice::new(&mut stats[..self.awake.len()]);
+        let changes = DisjointSlice::new(&mut changes[..self.awake.len() * tracked]);
+        self.simd.run(Tiles::<D, S> { sweep: self, scheme, targets, stats, changes });
+    }
+}
+
+/// How many components of the state are watched for the largest change.
+pub(crate) const fn tracked<const D: usize, S: Scheme<D, f64>>() -> usize {
+    if S::TRACKS_CHANGE { <S::State as Components<f64>>::COUNT } else { 0 }
+}
+
+/// The tiles of a sweep, with the scheme for one cell at a time.
+struct Tiles<'a, const D: usize, S> {
+    sweep: &'a Sweep<'a>,
+    scheme: &'a S,
+    targets: Targets<'a>,
+    stats: DisjointSlice<'a, TileStats>,
+    changes: DisjointSlice<'a>,
+}
+
+impl<const D: usize, S: Scheme<D, f64>> SimdKernel for Tiles<'_, D, S> {
+    type Output = ();
+    fn run<L: SimdVector>(self, context: impl SimdContext) {
+        self.scheme.with_scalar::<L, _>(OnLanes { tiles: self, context });
+    }
+}
+
+/// The same, to be computed on lanes.
+struct OnLanes<T, I> {
+    tiles: T,
+    context: I,
+}
+
+impl<const D: usize, L: SimdVector, S: Scheme<D, f64>, I: SimdContext> SchemeVisitor<D, L>
+    for OnLanes<Tiles<'_, D, S>, I>
+{
+    type Output = ();
+    fn visit<T: Scheme<D, L>>(self, scheme: &T) {
+        const {
+            strip::same::<L, S::State, T::State>();
+            strip::same::<L, S::Ground, T::Ground>();
+            assert!(S::TRACKS_CHANGE == T::TRACKS_CHANGE, "`with_scalar` gives another scheme");
+        };
+        let OnLanes { tiles: Tiles { sweep, targets, stats, changes, .. }, context } = self;
+        let Sweep { tiles, awake, blocks, .. } = *sweep;
+        let tracked = tracked::<D, S>();
+        let chunk = blocks.len().div_ceil(32 * rayon::current_num_threads()).max(1);
+        blocks.par_chunks(chunk).with_max_len(1).for_each(|blocks| {
+            Workspace::with::<D, L, T>(|memory| {
+                context.call(
+                    #[inline(always)]
+                    || {
+                        let (mut scratch, mut reducer) = memory.cut::<D, L, T>();
+                        for TileBlock { awake: range, across } in blocks {
+                            let tiles = awake[range.clone()].iter().map(|number| &tiles[*number as usize]);
+                            // SAFETY: every tile belongs to one block.
+                            let found = unsafe {
+                                let changes = changes.slice(range.start * tracked..range.end * tracked);
+                                (stats.slice(range.clone()), changes)
+                            };
+                            let memory = (&mut scratch, &mut reducer);
+                            strip::run::<D, L, T, S>(sweep, scheme, tiles, *across, &targets, found, memory);
+                        }
+                    },
+                );
+            });
+        });
+    }
+}

@@ -1,0 +1,34 @@
+//! What everything after a run knows of a model: a table of quantities, words, and functions that draw it.
+//!
+//! Files, report, animation and `granflow plot` go over these and name no model. A model gives one [`Model`] and, for
+//! each kind of place that it flows on, one [`Domain`]; the models of this library stand in [`crate::models`].
+
+mod domain;
+#[cfg(feature = "figures")]
+mod drawing;
+#[cfg(feature = "figures")]
+mod history;
+mod plane;
+#[cfg(feature = "figures")]
+mod profiles;
+mod quantity;
+#[cfg(feature = "figures")]
+mod result_file;
+#[cfg(feature = "figures")]
+mod view;
+
+pub use domain::{Domain, Maps, Model, Words};
+#[cfg(feature = "figures")]
+pub use domain::{Instants, Pictures, Scene};
+#[cfg(feature = "figures")]
+pub use drawing::{Drawing, colour_limit, save_all};
+#[cfg(feature = "figures")]
+pub use history::history;
+pub use plane::Plane;
+#[cfg(feature = "figures")]
+pub use profiles::{Line, PILE, profiles};
+pub use quantity::{At, Kind, Quantity, Units};
+#[cfg(feature = "figures")]
+pub use result_file::ResultFile;
+#[cfg(feature = "figures")]
+pub use view::View;

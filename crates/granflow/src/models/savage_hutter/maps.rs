@@ -1,0 +1,279 @@
+//! The figures of a run on a mountain: shaded maps, the section along the path, the history; the animation.
+
+use super::path::{PathLine, path};
+use super::terrain::{REACHED, TerrainDomain};
+use crate::model::{Drawing, Instants, Scene, View, colour_limit, history};
+use crate::output;
+use crate::output::figures::{
+    Axis, Colours, Extent, Figure, FigureError, Map, Outline, Overlay, Picture, Relief, Section, short,
+};
+use crate::output::outlines::{Lattice, contour, rings};
+use std::sync::Arc;
+
+/// Colour of the release's outline, and of the edge of all that was reached.
+const RELEASE: [u8; 3] = [20, 20, 20];
+const EDGE: [u8; 3] = [0, 90, 160];
+const PATH: [u8; 3] = [0, 120, 80];
+/// Stands where a map shows nothing: so low that no interpolation brings it back.
+const NOWHERE: f64 = -1e12;
+
+/// What all maps of a run share.
+#[derive(Debug)]
+struct Background<'a> {
+    extent: Extent,
+    bed: &'a [f64],
+    release: Vec<Vec<[f64; 2]>>,
+    footprint: Vec<Vec<[f64; 2]>>,
+    path: Option<PathLine>,
+}
+
+impl<'a> Background<'a> {
+    /// Without the path.
+    fn of(view: &View, terrain: &'a TerrainDomain) -> Background<'a> {
+        let raster = &*terrain.raster;
+        let extent = Extent {
+            nx: raster.columns,
+            ny: raster.rows,
+            west: raster.west,
+            south: raster.south,
+            cell: raster.cell,
+        };
+        let outline = |map: &[f64], threshold: f64| {
+            rings(&contour(map, Lattice::from(raster), threshold), 4.0 * raster.cell * raster.cell)
+        };
+        let release = terrain.release.dense(raster.values.len());
+        Background {
+            extent,
+            bed: &raster.values,
+            release: outline(&release, terrain.release_threshold()),
+            footprint: view.map("peak_thickness").map_or(Vec::new(), |map| outline(map, REACHED)),
+            path: None,
+        }
+    }
+
+    /// The lines over a map: release, and, if wanted, the edge of all that was reached and the path.
+    fn outlines(&self, edge: bool, along: bool) -> Vec<Outline<'_>> {
+        let mut outlines = Vec::new();
+        for (k, points) in self.release.iter().enumerate() {
+            let name = if k == 0 { "release" } else { "" };
+            outlines.push(Outline {
+                name,
+                points,
+                closed: true,
+                colour: Some(RELEASE),
+                ..Default::default()
+            });
+        }
+        if edge {
+            for (k, points) in self.footprint.iter().enumerate() {
+                let name = if k == 0 { "reached" } else { "" };
+                outlines.push(Outline {
+                    name,
+                    points,
+                    closed: true,
+                    dashed: true,
+                    colour: Some(EDGE),
+                    ..Default::default()
+                });
+            }
+        }
+        if let Some(path) = self.path.as_ref().filter(|_| along) {
+            let points = &path.points;
+            outlines.push(Outline {
+                name: "path",
+                points,
+                dashed: true,
+                colour: Some(PATH),
+                ..Default::default()
+            });
+        }
+        outlines
+    }
+}
+
+/// What one map shows over the mountain.
+struct Layer<'s> {
+    name: &'static str,
+    label: &'static str,
+    unit: &'static str,
+    colours: Colours,
+    values: &'s [f64],
+    /// Shown is where this is thick.
+    thickness: &'s [f64],
+    /// The largest value that is shown, and where the colours end.
+    most: f64,
+    limit: f64,
+}
+
+impl Layer<'_> {
+    fn is_thickness(&self) -> bool {
+        matches!(self.name, "peak_thickness" | "deposit")
+    }
+
+    fn threshold(&self) -> f64 {
+        if self.is_thickness() { REACHED } else { -0.5 }
+    }
+
+    /// The values as they are shown, while they are. Films are fast and thin: a figure shows what a person would see.
+    fn shown(&self) -> Vec<f64> {
+        let value = |(&v, &h): (&f64, &f64)| match v {
+            _ if self.is_thickness() => v,
+            v if h > REACHED && v.is_finite() => v,
+            _ => NOWHERE,
+        };
+        self.values.iter().zip(self.thickness).map(value).collect()
+    }
+
+    /// Find its range.
+    fn ranged(mut self) -> Self {
+        let shown = self.shown();
+        let least = if self.is_thickness() { REACHED } else { 0.0 };
+        self.limit = colour_limit(shown.iter().copied().filter(|&v| v > least));
+        self.most = shown.iter().fold(0.0_f64, |most, v| most.max(*v));
+        self
+    }
+
+    fn outlines<'a>(&self, ground: &'a Background) -> Vec<Outline<'a>> {
+        ground.outlines(self.name == "deposit", self.name == "deposit")
+    }
+
+    /// Its map of what is shown, without words and relief.
+    fn map<'a>(&self, shown: &'a [f64], ground: &'a Background, outlines: &'a [Outline]) -> Map<'a> {
+        let most = if self.limit > 0.0 { self.limit } else { 1.0 };
+        let overlay = Overlay {
+            values: shown,
+            quantity: Axis::new(self.label, self.unit).over(0.0, most),
+            threshold: self.threshold(),
+            colours: self.colours,
+        };
+        Map { extent: ground.extent, bed: ground.bed, overlay: Some(overlay), outlines, ..Default::default() }
+    }
+}
+
+/// All figures of a run on a mountain.
+pub(super) fn figures<'a>(view: &'a View<'a>, terrain: &'a TerrainDomain) -> Vec<Drawing<'a>> {
+    let Some(peak) = view.map("peak_thickness") else { return Vec::new() };
+    let ground = Arc::new(Background { path: path(view, terrain), ..Background::of(view, terrain) });
+    let plan: [(&'static str, &'static str, &'static str, Colours); 5] = [
+        ("peak_thickness", "greatest thickness", "m", Colours::Thickness),
+        ("deposit", "deposit", "m", Colours::Thickness),
+        ("peak_speed", "greatest speed", "m/s", Colours::Speed),
+        ("peak_pressure", "greatest pressure", "kPa", Colours::Speed),
+        ("arrival_time", "arrival time", "s", Colours::Viridis),
+    ];
+    let layers = plan.into_iter().filter_map(|(name, label, unit, colours)| {
+        let values = view.map(name)?;
+        let thickness = if name == "deposit" { values } else { peak };
+        Some(Layer { name, label, unit, colours, values, thickness, most: 0.0, limit: 0.0 }.ranged())
+    });
+    let layers: Vec<Layer> = layers.collect();
+    // Before the maps are drawn side by side: most of them show the same box of the mountain.
+    let relief = layers
+        .first()
+        .and_then(|layer| layer.map(&layer.shown(), &ground, &layer.outlines(&ground)).mountain().ok());
+    let relief = Arc::new(relief);
+    let mut drawings: Vec<Drawing> =
+        layers.into_iter().map(|layer| map(view, layer, ground.clone(), relief.clone())).collect();
+    if let (true, Some(deposit), Some(speed)) =
+        (ground.path.is_some(), view.map("deposit"), view.map("peak_speed"))
+    {
+        drawings.push(section(view, ground, [deposit, peak, speed]));
+    }
+    drawings.extend(history(view));
+    drawings
+}
+
+/// The map of a layer.
+fn map<'a>(
+    view: &'a View<'a>,
+    layer: Layer<'a>,
+    ground: Arc<Background<'a>>,
+    relief: Arc<Option<Relief>>,
+) -> Drawing<'a> {
+    let Layer { name, label, unit, most, limit, .. } = layer;
+    let clipped = if limit < most { ", colours end at the value that 0.2 % of the cells exceed" } else { "" };
+    let of = if name == "deposit" { "where it is" } else { "where the flow was" };
+    let what = format!("{label}, largest {} {unit}{clipped}", short(most));
+    let subtitle = format!("{what}; {}", view.subtitle);
+    let lines = "; dashed: the edge of all that was reached, and the path of the section";
+    let lines = if name == "deposit" { lines } else { "" };
+    let mut caption = format!("{what}; shown {of} thicker than {REACHED} m{lines}.");
+    caption[..1].make_ascii_uppercase();
+    Drawing::new(name, caption, move || {
+        let (outlines, shown) = (layer.outlines(&ground), layer.shown());
+        let map = layer.map(&shown, &ground, &outlines);
+        Map { title: &view.title, subtitle: &subtitle, relief: relief.as_ref().as_ref(), ..map }.draw()
+    })
+}
+
+/// The section along the path, from the maps of deposit, peak thickness and peak speed.
+fn section<'a>(view: &'a View<'a>, ground: Arc<Background<'a>>, maps: [&'a [f64]; 3]) -> Drawing<'a> {
+    let caption = "Section along the path: from the highest released cell to the farthest one reached, where \
+                   greatest thickness times greatest speed is largest. The layers are drawn thicker than they \
+                   are, as stated; the ground has its true height.";
+    Drawing::new("section", caption, move || {
+        let Some(path) = &ground.path else { return Section::default().draw() };
+        let along = |map: &[f64]| path.cells.iter().map(|&k| map[k]).collect::<Vec<f64>>();
+        let [deposit, peak_thickness, peak_speed] = maps.map(along);
+        Section {
+            title: &view.title,
+            subtitle: "along the path of the greatest flow, from the highest release to the farthest reach",
+            distance: &path.distance,
+            bed: &along(ground.bed),
+            deposit: &deposit,
+            peak_thickness: &peak_thickness,
+            peak_speed: &peak_speed,
+            exaggeration: None,
+        }
+        .draw()
+    })
+}
+
+/// The thickness on a mountain over time.
+pub(super) fn scene<'a>(
+    view: &'a View<'a>,
+    terrain: &'a TerrainDomain,
+    instants: &mut Instants<'_>,
+) -> Result<Box<dyn Scene + 'a>, output::Error> {
+    let reached = view.map("peak_thickness").map(|peak| peak.iter().copied().filter(|&h| h > REACHED));
+    let most = reached.map_or(0.0, colour_limit);
+    let limit = if most > 0.0 { most } else { 1.0 };
+    let mut scene = TerrainScene { view, ground: Background::of(view, terrain), limit, relief: None };
+    if let Some(first) = instants.next() {
+        let (first, outlines) = (first?, scene.ground.outlines(true, false));
+        scene.relief = scene.map(&first, &outlines).mountain().ok();
+    }
+    Ok(Box::new(scene))
+}
+
+struct TerrainScene<'a> {
+    view: &'a View<'a>,
+    ground: Background<'a>,
+    /// Greatest thickness that the colours tell apart.
+    limit: f64,
+    /// The mountain under all pictures.
+    relief: Option<Relief>,
+}
+
+impl TerrainScene<'_> {
+    /// The thickness at an instant, without words and relief.
+    fn map<'b>(&'b self, fields: &'b [Vec<f64>], outlines: &'b [Outline]) -> Map<'b> {
+        let overlay = Overlay {
+            values: fields.first().map_or(&[], Vec::as_slice),
+            quantity: Axis::new("thickness h", self.view.unit("m")).over(0.0, self.limit),
+            threshold: REACHED,
+            colours: Colours::Thickness,
+        };
+        let Background { extent, bed, .. } = self.ground;
+        Map { extent, bed, overlay: Some(overlay), outlines, ..Default::default() }
+    }
+}
+
+impl Scene for TerrainScene<'_> {
+    fn draw(&self, time: f64, fields: &[Vec<f64>]) -> Result<Picture, FigureError> {
+        let subtitle = format!("t = {} {}", short(time), self.view.unit("s"));
+        let outlines = self.ground.outlines(true, false);
+        let map = self.map(fields, &outlines);
+        Map { title: &self.view.title, subtitle: &subtitle, relief: self.relief.as_ref(), ..map }.draw()
+    }
+}

@@ -1,0 +1,87 @@
+//! What is drawn of an avalanche, by the place it flows on.
+
+use super::{ChuteDomain, chute};
+use crate::model::{Domain, Drawing, Instants, Pictures, ResultFile, Scene, View};
+use crate::output;
+use std::sync::Arc;
+
+#[cfg(feature = "geo")]
+use super::{maps, terrain::TerrainDomain};
+#[cfg(feature = "geo")]
+use crate::{raster::Raster, release::Sparse};
+
+pub(super) static PICTURES: Pictures =
+    Pictures { needed: &["time", "x", "thickness"], domain, shown, figures, film: &["thickness"], scene };
+
+/// Those of a mountain show maps alone.
+fn shown(domain: &dyn Domain, dimensions: usize) -> &'static [&'static str] {
+    match (domain.get::<ChuteDomain>(), dimensions) {
+        (None, _) => &[],
+        (Some(_), 1) => &["thickness", "velocity_x"],
+        (Some(_), _) => &["thickness"],
+    }
+}
+
+fn figures<'a>(view: &'a View<'a>, domain: &'a dyn Domain) -> Vec<Drawing<'a>> {
+    #[cfg(feature = "geo")]
+    if let Some(terrain) = domain.get::<TerrainDomain>() {
+        return maps::figures(view, terrain);
+    }
+    let _ = domain;
+    if view.dimensions() == 1 { chute::line(view) } else { chute::plane(view) }
+}
+
+fn scene<'a>(
+    view: &'a View<'a>,
+    domain: &'a dyn Domain,
+    instants: &mut Instants<'_>,
+) -> Result<Box<dyn Scene + 'a>, output::Error> {
+    #[cfg(feature = "geo")]
+    if let Some(terrain) = domain.get::<TerrainDomain>() {
+        return maps::scene(view, terrain, instants);
+    }
+    let _ = (domain, instants);
+    Ok(chute::scene(view))
+}
+
+/// A chute, or the mountain where the file has a bed.
+fn domain(file: &ResultFile, centres: [&[f64]; 2]) -> Result<Arc<dyn Domain>, String> {
+    if !file.has("bed") {
+        return Ok(Arc::new(ChuteDomain));
+    }
+    terrain(file, centres)
+}
+
+#[cfg(not(feature = "geo"))]
+fn terrain(_file: &ResultFile, _centres: [&[f64]; 2]) -> Result<Arc<dyn Domain>, String> {
+    Err("it has a bed, which this program draws only if it is built with the feature `geo`".to_owned())
+}
+
+#[cfg(feature = "geo")]
+fn terrain(file: &ResultFile, centres: [&[f64]; 2]) -> Result<Arc<dyn Domain>, String> {
+    Ok(Arc::new(TerrainDomain {
+        raster: Arc::new(raster(centres, file.whole("bed")?)?),
+        release: Arc::new(Sparse::of(file.first("thickness", 2)?)),
+        density: f64::NAN,
+    }))
+}
+
+/// The bed on the cells with these centres.
+#[cfg(feature = "geo")]
+fn raster([x, y]: [&[f64]; 2], values: Vec<f64>) -> Result<Raster, String> {
+    let [Some(cell), Some(rows)] = [x, y].map(|c| c.get(1).map(|second| second - c[0])) else {
+        return Err("its bed has fewer than two cells along an axis".to_owned());
+    };
+    if values.len() != x.len() * y.len() || cell <= 0.0 || rows <= 0.0 {
+        return Err("its bed does not fit its coordinates".to_owned());
+    }
+    Ok(Raster {
+        columns: x.len(),
+        rows: y.len(),
+        west: x[0] - 0.5 * cell,
+        south: y[0] - 0.5 * cell,
+        cell,
+        values,
+        crs: None,
+    })
+}

@@ -1,0 +1,199 @@
+//! An avalanche without a case file.
+
+use super::super::ChuteDomain;
+#[cfg(feature = "geo")]
+use super::super::TerrainDomain;
+use super::flowing::Flowing;
+use crate::model::{Domain, Plane};
+use crate::run::{Run, Simulated};
+use granflow_engine::grid::Grid;
+use granflow_engine::kernels::Kernel;
+use granflow_engine::simulation::{BuildError, Simulation, StepSize};
+use granflow_model::savage_hutter::Flow;
+use granflow_model::savage_hutter::balanced::Balanced;
+use granflow_model::savage_hutter::friction::{Coulomb, Law};
+use granflow_model::savage_hutter::ground::{Bed, Chute};
+use granflow_model::scheme::Scheme;
+use std::sync::Arc;
+
+/// Standard gravity as the case files take it \[m/s^2\].
+const GRAVITY: f64 = 9.81;
+
+type Field<'a, const D: usize, T> = Box<dyn Fn([f64; D]) -> T + Sync + 'a>;
+
+/// An avalanche to be started: SI units, the default scheme at first order, mu = 0.4, nothing on the bed.
+pub struct Avalanche<'a, const D: usize, B> {
+    grid: Grid<D>,
+    bed: B,
+    law: Law,
+    second_order: bool,
+    film: f64,
+    step: Option<StepSize>,
+    thickness: Field<'a, D, f64>,
+    velocity: Field<'a, D, [f64; D]>,
+}
+
+/// A plane that falls along +x.
+pub struct Slope {
+    angle: f64,
+    gravity: f64,
+    epsilon: f64,
+}
+
+impl<'a, const D: usize, B> Avalanche<'a, D, B> {
+    fn over(grid: Grid<D>, bed: B) -> Self {
+        Avalanche {
+            grid,
+            bed,
+            law: Law::Coulomb(Coulomb { mu: 0.4 }),
+            second_order: false,
+            film: 1e-6,
+            step: None,
+            thickness: Box::new(|_| 0.0),
+            velocity: Box::new(|_| [0.0; D]),
+        }
+    }
+    /// Thickness normal to the bed at the start, in metres, at a place of the plane.
+    #[must_use]
+    pub fn thickness(mut self, thickness: impl Fn([f64; D]) -> f64 + Sync + 'a) -> Self {
+        self.thickness = Box::new(thickness);
+        self
+    }
+    /// Horizontal velocity at the start \[m/s\].
+    #[must_use]
+    pub fn velocity(mut self, velocity: impl Fn([f64; D]) -> [f64; D] + Sync + 'a) -> Self {
+        self.velocity = Box::new(velocity);
+        self
+    }
+    /// Coulomb friction with mu = tan(delta).
+    #[must_use]
+    pub fn mu(self, mu: f64) -> Self {
+        self.friction(Law::Coulomb(Coulomb { mu }))
+    }
+    /// The friction law.
+    #[must_use]
+    pub fn friction(self, law: Law) -> Self {
+        Avalanche { law, ..self }
+    }
+    /// Second order in space and time: the scheme `balanced_2`.
+    #[must_use]
+    pub fn second_order(self) -> Self {
+        Avalanche { second_order: true, ..self }
+    }
+    /// Thickness below which a cell is a film and is held \[m\].
+    #[must_use]
+    pub fn film(self, film: f64) -> Self {
+        Avalanche { film, ..self }
+    }
+    /// Another step than the scheme suggests.
+    #[must_use]
+    pub fn step(self, step: StepSize) -> Self {
+        Avalanche { step: Some(step), ..self }
+    }
+
+    /// The run on grounds of a kind, one for each cell.
+    fn run<G>(
+        self,
+        domain: impl Domain,
+        on_terrain: bool,
+        ground: impl Fn([usize; D]) -> G + Sync,
+    ) -> Result<Box<dyn Run>, BuildError>
+    where
+        G: Bed<D, f64> + 'static,
+        Balanced<Law, G>: Kernel<D, State = Flow<D, f64>, Ground = G>,
+    {
+        let Avalanche { grid, law, second_order, film, step, thickness, velocity, .. } = self;
+        let (name, scheme) = match second_order {
+            false => ("balanced", Balanced::<Law, G>::first(law, film)),
+            true => ("balanced_2", Balanced::<Law, G>::second(law, film)),
+        };
+        let step = step.unwrap_or(StepSize::Courant(scheme.suggested_courant()));
+        let state = |index| {
+            let place = grid.centre(index);
+            let h = thickness(place) / ground(index).thickness(1.0);
+            let h = if h.is_finite() { h } else { 0.0 };
+            Flow { h, q: velocity(place).map(|u| h * u) }
+        };
+        let simulation = Simulation::new(scheme, grid, step, &ground, state)?;
+        let plane = Plane::of(&grid, Arc::new(domain));
+        let physics = Flowing::<Balanced<Law, G>>::new(name, film, on_terrain);
+        Ok(Box::new(Simulated::new(simulation, physics, plane)))
+    }
+}
+
+impl<'a, const D: usize> Avalanche<'a, D, Slope> {
+    /// On a plane of this inclination \[radians\], downhill along +x, under gravity.
+    #[must_use]
+    pub fn on_plane(grid: Grid<D>, angle: f64) -> Self {
+        Self::over(grid, Slope { angle, gravity: GRAVITY, epsilon: 1.0 })
+    }
+    /// In the papers' scaling: lengths by L, heights by H = epsilon L, times by sqrt(L/g).
+    #[must_use]
+    pub fn scaled(mut self, epsilon: f64) -> Self {
+        self.bed = Slope { gravity: 1.0, epsilon, ..self.bed };
+        self
+    }
+    /// The run; nothing is computed yet.
+    ///
+    /// # Errors
+    /// [`BuildError`] for a grid without cells, or a step that the scheme does not take.
+    pub fn start(self) -> Result<Box<dyn Run>, BuildError> {
+        let Slope { angle, gravity, epsilon } = self.bed;
+        let cos = gravity * angle.cos();
+        let mut tilt = [0.0; D];
+        tilt[0] = gravity * angle.sin();
+        let ground = Chute { tilt, beta: epsilon * cos, cos, curvature: 0.0 };
+        self.run(ChuteDomain, false, |_| ground)
+    }
+}
+
+#[cfg(feature = "geo")]
+impl<'a> Avalanche<'a, 2, granflow_geo::terrain::Terrain> {
+    /// On the terrain z = b(x, y) whose elevations \[m\] are given for square cells, x fastest, the first row in the south, not a
+    /// number outside the data. Slopes and curvatures are fitted over `window` \[m\].
+    ///
+    /// # Panics
+    /// If there are not as many elevations as cells, or the cells are not squares.
+    #[must_use]
+    pub fn on_terrain(grid: Grid<2>, elevations: Vec<f64>, window: f64) -> Self {
+        assert_eq!(elevations.len(), grid.count(), "one elevation for each cell");
+        assert_eq!(grid.size[0].to_bits(), grid.size[1].to_bits(), "square cells");
+        let bed = granflow_geo::raster::Raster {
+            columns: grid.cells[0],
+            rows: grid.cells[1],
+            west: grid.origin[0],
+            south: grid.origin[1],
+            cell: grid.size[0],
+            values: elevations,
+            crs: None,
+        };
+        let curvature = granflow_geo::terrain::Curvature::Length(window);
+        let edges = [[granflow_model::scheme::Boundary::Absorbing; 2]; 2];
+        let grid = Grid { boundary: edges, ..grid };
+        Self::over(grid, granflow_geo::terrain::Terrain::new(bed, curvature))
+    }
+    /// The run; nothing is computed yet.
+    ///
+    /// # Errors
+    /// [`BuildError`] for a grid without cells, or a step that the scheme does not take.
+    pub fn start(mut self) -> Result<Box<dyn Run>, BuildError> {
+        let empty = granflow_geo::raster::Raster {
+            columns: 0,
+            rows: 0,
+            values: Vec::new(),
+            ..(*self.bed.bed).clone()
+        };
+        let none = granflow_geo::terrain::Terrain::new(empty, granflow_geo::terrain::Curvature::Off);
+        let terrain = std::mem::replace(&mut self.bed, none);
+        let columns = self.grid.cells[0];
+        let thickness = &self.thickness;
+        let at = |k: usize| thickness(self.grid.centre([k % columns, k / columns]));
+        let release = granflow_geo::release::Sparse::of((0..self.grid.count()).map(at));
+        let domain = TerrainDomain {
+            raster: Arc::new(terrain.bed.with_values(Vec::new())),
+            release: Arc::new(release),
+            density: f64::NAN,
+        };
+        self.run(domain, true, |cell| super::terrain::ground_at(&terrain, GRAVITY, cell))
+    }
+}

@@ -1,0 +1,103 @@
+//! What an avalanche would compute: material, bed, mass, pull.
+
+use super::{chute, terrain};
+use crate::StartError;
+use crate::describe::{Line, axis, case, effort, range};
+use crate::run::Run;
+use granflow_case::avalanche::Material;
+use granflow_case::terrain::Order;
+use granflow_case::{Axis, RunPlan, Side};
+use granflow_case::{chute::Plan as OnChute, terrain::Plan as OnTerrain};
+use granflow_geo::terrain::Terrain;
+
+/// A fast avalanche \[m/s\].
+const FAST: f64 = 30.0;
+
+/// The lines about an avalanche on a chute.
+pub(crate) fn chute(run: &RunPlan, plan: OnChute) -> Result<Vec<Line>, StartError> {
+    let order = if run.scheme == "balanced_2" { "second order" } else { "first order" };
+    let mut lines = case(run, material(&plan.material), &format!("{order}, film {:e}, ", plan.film));
+    lines.extend(grid(&plan));
+    lines.extend(start(run, &mut *chute::start(run, plan)?));
+    Ok(lines)
+}
+
+/// The lines about an avalanche on a mountain.
+pub(crate) fn terrain(run: &RunPlan, plan: &OnTerrain) -> Result<Vec<Line>, StartError> {
+    let order = match plan.scheme {
+        Order::First => "first order",
+        Order::Second => "second order",
+    };
+    let mut lines = case(run, material(&plan.material), &format!("{order}, film {:e}, ", plan.film));
+    let (bed, release) = terrain::load(run, plan)?;
+    lines.extend(mountain(&bed));
+    lines.extend(start(run, &mut *terrain::simulate(run, plan, bed, release)?));
+    Ok(lines)
+}
+
+/// How the state at the start would move.
+fn start(run: &RunPlan, start: &mut dyn Run) -> Vec<Line> {
+    let (totals, rate) = (start.totals(), start.stepper().rate());
+    let cells: usize = start.stepper().cells().iter().product();
+    let bytes = cells * start.stepper().bytes_per_cell(start.has_speed());
+    let pull = start.stepper_mut().yield_ratios().into_iter().fold(0.0, f64::max);
+    let verdict = if pull > 1.0 { "it will start" } else { "it rests" };
+    let mut lines = vec![
+        ("mass", format!("{:.6} in {} cells", totals.volume, totals.wet)),
+        ("pull", format!("at most {pull:.6} of what friction holds: {verdict}")),
+    ];
+    lines.extend(effort(run, bytes, rate));
+    lines
+}
+
+fn material(material: &Material) -> Vec<Line> {
+    let Material { friction, mu, pressure_coefficient, gravity, density, .. } = material;
+    vec![
+        ("friction", format!("{friction}, mu = {mu:.6} ({:.3} deg)", mu.atan().to_degrees())),
+        ("material", format!("k = {pressure_coefficient:.6}, gravity {gravity}, density {density}")),
+    ]
+}
+
+/// The cells of a chute, its slope, and the mass on it.
+fn grid(plan: &OnChute) -> Vec<Line> {
+    let with_sides = |name: &str, along: &Axis, sides: [Side; 2]| {
+        let [low, high] = sides.map(|side| format!("{side:?}").to_lowercase());
+        format!("{}, {low} | {high}", axis(name, along))
+    };
+    let mut lines = vec![("grid", with_sides("x", &plan.grid.x, plan.sides[0]))];
+    lines.extend(plan.grid.y.as_ref().map(|y| ("", with_sides("y", y, plan.sides[1]))));
+    let (low, high) = range(&plan.zeta);
+    lines.push(if low < high {
+        ("slope", format!("{:.4} to {:.4} deg", low.to_degrees(), high.to_degrees()))
+    } else {
+        ("slope", format!("{:.4} deg", low.to_degrees()))
+    });
+    let thickness = &plan.initial.thickness;
+    let (low, high) = range(thickness);
+    let area = plan.grid.x.width() * plan.grid.y.as_ref().map_or(1.0, Axis::width);
+    let wet = thickness.iter().filter(|h| **h > plan.film).count();
+    let mass = thickness.iter().sum::<f64>() * area;
+    lines.push(("thickness", format!("{low} to {high}, mass {mass:.6}, {wet} wet cells")));
+    lines
+}
+
+/// A mountain: size, steepness, curvature under a fast mass.
+fn mountain(terrain: &Terrain) -> Vec<Line> {
+    let bed = &terrain.bed;
+    let nodata = bed.values.iter().filter(|z| z.is_nan()).count();
+    let steep = terrain.steepness(60_f64.to_radians());
+    let (low, high) = bed.range().unwrap_or_default();
+    // Where the bed is convex, N = g c + c w^T (D^2 b) w vanishes at |w|^2 = g/|smallest eigenvalue of D^2 b|.
+    let convex = |h: &[f64; 3]| 0.5 * (h[0] + h[2]) - (0.25 * (h[0] - h[2]).powi(2) + h[1] * h[1]).sqrt();
+    let flies = terrain.count(|fit| -convex(&fit.hessian) * FAST * FAST > 9.81);
+    let valid = (bed.values.len() - nodata).max(1);
+    let share = 100.0 * flies as f64 / valid as f64;
+    let size = format!("{} x {} cells of {} m", bed.columns, bed.rows, bed.cell);
+    let steepest = steep.max_slope.to_degrees();
+    vec![
+        ("terrain", format!("{size}, {nodata} without elevation")),
+        ("", format!("{low:.1} to {high:.1} m")),
+        ("steep", format!("{} cells above 60 deg, steepest {steepest:.1} deg", steep.steeper)),
+        ("curvature", format!("{share:.2} % of the cells throw a mass of {FAST} m/s into the air (N < 0)")),
+    ]
+}

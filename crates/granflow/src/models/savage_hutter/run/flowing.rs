@@ -1,0 +1,80 @@
+//! The Savage-Hutter equations as a run shows them: thickness and velocity, peaks and times.
+
+use crate::run::{CellOf, Field, Maps, Numbers, Physics, Record, Value};
+use granflow_engine::kernels::Kernel;
+use granflow_engine::simulation::Simulation;
+use granflow_model::savage_hutter::Flow;
+use granflow_model::savage_hutter::ground::Bed;
+use std::marker::PhantomData;
+
+/// A scheme for flowing mass, under the name by which a case asks for it.
+pub(crate) struct Flowing<S> {
+    name: &'static str,
+    film: f64,
+    /// The bed has an elevation: surface and speed are shown too.
+    on_terrain: bool,
+    scheme: PhantomData<fn() -> S>,
+}
+
+impl<S> Flowing<S> {
+    pub fn new(name: &'static str, film: f64, on_terrain: bool) -> Self {
+        Flowing { name, film, on_terrain, scheme: PhantomData }
+    }
+}
+
+/// Thickness normal to the bed.
+fn thickness<const D: usize, S>(cell: &CellOf<D, S>) -> f64
+where
+    S: Kernel<D, State = Flow<D, f64>>,
+    S::Ground: Bed<D, f64>,
+{
+    cell.ground.thickness(cell.state.h)
+}
+
+impl<const D: usize, S> Physics<D> for Flowing<S>
+where
+    S: Kernel<D, State = Flow<D, f64>> + 'static,
+    S::Ground: Bed<D, f64>,
+{
+    type Scheme = S;
+
+    fn scheme(&self) -> &str {
+        self.name
+    }
+    fn fields(&self) -> Vec<Field<D, S>> {
+        let field = |name, value: fn(&CellOf<D, S>) -> f64| Field { name, value: Value::Of(value), short: 0 };
+        // On a chute the thickness is the first unknown itself.
+        let own = Field { name: "thickness", value: Value::Component(0), short: 0 };
+        let mut fields = vec![if self.on_terrain { field("thickness", thickness::<D, S>) } else { own }];
+        fields.push(field("velocity_x", |cell| cell.state.velocity()[0]));
+        if D > 1 {
+            fields.push(field("velocity_y", |cell| cell.state.velocity()[D - 1]));
+        }
+        if self.on_terrain {
+            fields.push(field("surface", |cell| {
+                cell.ground.elevation() + cell.ground.thickness(1.0) * thickness::<D, S>(cell)
+            }));
+            fields.push(field("speed", |cell| cell.ground.square(cell.state.velocity()).sqrt()));
+        }
+        fields
+    }
+    fn film(&self) -> f64 {
+        self.film
+    }
+    fn elevation(&self, simulation: &Simulation<D, S>) -> Vec<f64> {
+        simulation.map(|cell| cell.ground.elevation())
+    }
+    fn maps(&self, simulation: &mut Simulation<D, S>) -> Maps {
+        let deposit = simulation.map(thickness::<D, S>);
+        vec![("deposit", deposit), ("yield_margin", simulation.yield_ratios())]
+    }
+    fn numbers(&self, simulation: &Simulation<D, S>, _record: &Record) -> Numbers {
+        let totals = simulation.totals();
+        let share = if totals.volume == 0.0 { 0.0 } else { totals.film / totals.volume };
+        vec![
+            ("kinetic_energy_final".to_owned(), totals.energy),
+            ("moving_cells_final".to_owned(), totals.moving as f64),
+            ("film_share".to_owned(), share),
+        ]
+    }
+}

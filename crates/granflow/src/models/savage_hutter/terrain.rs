@@ -1,0 +1,120 @@
+//! A mountain: where an avalanche flows in SI units, and what follows there from its maps.
+
+use super::MODEL;
+use crate::model::{Domain, Maps, Model, Quantity, Units};
+use crate::output::netcdf::Crs;
+use crate::output::outlines::{Lattice, Outline, contour};
+use crate::output::summary::Summary;
+use crate::raster::Raster;
+use crate::release::Sparse;
+use std::borrow::Cow;
+use std::sync::Arc;
+
+/// A cell counts as reached above this peak thickness \[m\].
+pub(super) const REACHED: f64 = 0.1;
+/// The peak pressure that counts as reached, for the runout \[kPa\].
+const REACHED_PRESSURE: f64 = 1.0;
+
+/// A mountain; lengths are metres, times seconds.
+#[derive(Debug, Clone)]
+pub struct TerrainDomain {
+    /// The elevation. While a run computes, its grounds hold it and the raster has no values: see
+    /// [`Domain::with_bed`].
+    pub raster: Arc<Raster>,
+    /// Released thickness normal to the bed \[m\].
+    pub release: Arc<Sparse>,
+    /// Density of the mass \[kg/m^3\]; NaN where a file does not tell it.
+    pub density: f64,
+}
+
+impl Domain for TerrainDomain {
+    fn model(&self) -> &'static Model {
+        &MODEL
+    }
+
+    fn units(&self) -> Units {
+        Units::Si
+    }
+
+    fn projected(&self) -> bool {
+        true
+    }
+
+    fn keeps(&self, series: &Quantity, dimensions: usize) -> bool {
+        series.name != "velocity_y" || dimensions > 1
+    }
+
+    fn elevation(&self) -> Option<&[f64]> {
+        Some(&self.raster.values)
+    }
+
+    fn crs(&self) -> Option<Crs> {
+        self.raster.crs.as_ref().map(|crs| Crs { epsg: crs.epsg, wkt: crs.wkt.clone() })
+    }
+
+    fn raster(&self) -> Option<&Raster> {
+        Some(&self.raster)
+    }
+
+    fn fixed(&self) -> Vec<(&'static str, Cow<'_, [f64]>)> {
+        vec![("bed", self.raster.values.as_slice().into())]
+    }
+
+    fn with_bed(&self, elevation: &dyn Fn() -> Vec<f64>) -> Option<Arc<dyn Domain>> {
+        let raster = Arc::new(self.raster.with_values(elevation()));
+        Some(Arc::new(TerrainDomain { raster, ..self.clone() }))
+    }
+
+    /// The peak pressure, runout and reach angle.
+    fn derive(&self, centres: [&[f64]; 2], maps: &mut Maps, summary: &mut Summary) {
+        let Some((_, speed)) = maps.iter().find(|(name, _)| *name == "peak_speed") else { return };
+        let pressure: Vec<f64> = speed.iter().map(|v| self.density * v * v / 1000.0).collect();
+        if let Some((length, drop)) = self.runout(centres, &pressure) {
+            summary.runout = Some(length);
+            summary.reach_angle = Some((drop / length).atan().to_degrees());
+        }
+        maps.push(("peak_pressure", pressure));
+    }
+
+    /// Release, deposit, and all that was reached.
+    fn outlines(&self, maps: &Maps) -> Vec<Outline> {
+        let lattice = Lattice::from(&*self.raster);
+        let outline = |name: &str, map: &[f64], threshold: f64| Outline {
+            name: name.to_owned(),
+            threshold,
+            unit: "m".to_owned(),
+            area: contour(map, lattice, threshold),
+        };
+        let release = self.release.dense(self.raster.values.len());
+        let mut all = vec![outline("release", &release, self.release_threshold())];
+        for name in ["deposit", "peak_thickness"] {
+            let map = maps.iter().find(|(known, _)| *known == name);
+            all.extend(map.map(|(_, map)| outline(name, map, REACHED)));
+        }
+        all
+    }
+}
+
+impl TerrainDomain {
+    /// The thickness that outlines the release: as of the other outlines, less where all is thinner.
+    pub(super) fn release_threshold(&self) -> f64 {
+        let largest = self.release.most();
+        if largest > 0.0 { REACHED.min(0.5 * largest) } else { REACHED }
+    }
+
+    /// Horizontal length, and drop, from the highest released cell to the farthest that the mass reached with a peak
+    /// pressure of [`REACHED_PRESSURE`].
+    fn runout(&self, [x, y]: [&[f64]; 2], pressure: &[f64]) -> Option<(f64, f64)> {
+        let bed = &self.raster.values;
+        let columns = x.len();
+        let released = self.release.iter().filter(|(_, thickness)| *thickness > 0.0).map(|(cell, _)| cell);
+        let top = released.max_by(|&a, &b| bed[a].total_cmp(&bed[b]))?;
+        let from = |k: usize| {
+            let (dx, dy) = (x[k % columns] - x[top % columns], y[k / columns] - y[top / columns]);
+            dx.hypot(dy)
+        };
+        let reached = (0..bed.len()).filter(|&k| pressure[k] >= REACHED_PRESSURE);
+        let far = reached.max_by(|&a, &b| from(a).total_cmp(&from(b)))?;
+        (from(far) > 0.0).then(|| (from(far), bed[top] - bed[far]))
+    }
+}

@@ -1,0 +1,74 @@
+//! The loop: steps until one of a run's ends is reached, sinks looking on.
+
+use super::{Ends, Failure, Run, Until};
+use crate::output::summary::StopReason;
+use crate::sinks::{Sink, SinkError};
+
+/// Why a run did not reach an end.
+#[derive(Debug, thiserror::Error)]
+pub enum DriveError {
+    /// A step could not be taken; it began at time `time`.
+    #[error("{failure}")]
+    Step {
+        /// Why.
+        failure: Failure,
+        /// Time at its begin.
+        time: f64,
+    },
+    /// A sink could not take what it was shown.
+    #[error(transparent)]
+    Sink(#[from] SinkError),
+}
+
+/// Step `run` to the first of its `ends`, or until a sink asks for the end. An adaptive step is cut at every instant that a
+/// sink waits for; a fixed step never is: the sink is shown the step that comes nearest.
+///
+/// # Errors
+/// [`DriveError`]: the sinks have seen every step before.
+pub fn drive(run: &mut dyn Run, ends: &Ends, sinks: &mut [&mut dyn Sink]) -> Result<StopReason, DriveError> {
+    let last = ends.time.unwrap_or(f64::INFINITY);
+    if ends.kinetic_energy.is_some() {
+        run.track_energy();
+    }
+    loop {
+        let asked = sinks.iter().any(|sink| sink.wants_end());
+        if asked {
+            return Ok(StopReason::Interrupted);
+        }
+        if let Some(reason) = reached(run, ends, last) {
+            return Ok(reason);
+        }
+        let instant = sinks.iter().map(|sink| sink.next_instant()).fold(last, f64::min);
+        let until = if run.stepper().is_adaptive() { instant } else { last };
+        let time = run.time();
+        let dt = run.step(until).map_err(|failure| DriveError::Step { failure, time })?;
+        if dt.is_infinite() {
+            return Ok(StopReason::AtRest);
+        }
+        for sink in sinks.iter_mut() {
+            sink.after_step(run)?;
+        }
+    }
+}
+
+/// Why the run is over, if it is.
+fn reached(run: &dyn Run, ends: &Ends, last: f64) -> Option<StopReason> {
+    let record = run.record();
+    match ends.until {
+        Some(Until::Rest { .. }) if run.at_rest() => return Some(StopReason::AtRest),
+        Some(Until::Rest { speed: Some(limit) }) if run.steps() > 1 && run.stepper().speed() < limit => {
+            return Some(StopReason::BelowSpeed);
+        }
+        Some(Until::Steady { rate }) if run.is_steady(rate) => return Some(StopReason::Steady),
+        Some(Until::Equilibrium) if run.is_equilibrium() => return Some(StopReason::Steady),
+        _ => {}
+    }
+    let calm = |share: f64| record.peak_energy > 0.0 && record.energy < share * record.peak_energy;
+    if run.steps() > 0 && ends.kinetic_energy.is_some_and(calm) {
+        return Some(StopReason::KineticEnergy);
+    }
+    if run.time() >= last {
+        return Some(StopReason::EndTime);
+    }
+    ends.steps.is_some_and(|steps| run.steps() >= steps).then_some(StopReason::Steps)
+}

@@ -1,0 +1,20 @@
+//! What a run keeps in mind of its past.
+
+use std::time::Duration;
+
+/// Volume at the start and the peaks so far, in the units of the run.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Record {
+    /// Volume at the start.
+    pub initial: f64,
+    /// Largest speed.
+    pub peak_speed: f64,
+    /// Largest kinetic energy per density, if it is tracked.
+    pub peak_energy: f64,
+    /// Kinetic energy per density after the last step, if it is tracked, else at the start.
+    pub energy: f64,
+    /// Cells with a depth when totals were last taken.
+    pub wet_cells: usize,
+    /// Time on the clock that the steps of this process took.
+    pub stepping: Duration,
+}

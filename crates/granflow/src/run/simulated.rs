@@ -1,0 +1,268 @@
+//! A simulation of the engine as a [`Run`]: what a model adds to its scheme is its [`Physics`].
+
+use super::{Failure, FieldView, Maps, Record, Run, Saved, Totals};
+use crate::model::Plane;
+use granflow_engine::Stepper;
+use granflow_engine::grid::Layout;
+use granflow_engine::kernels::Kernel;
+use granflow_engine::simulation::Simulation;
+use granflow_model::scheme::{Cell, Scheme};
+use std::borrow::Cow;
+use std::time::{Duration, Instant};
+
+/// Ground and state of a cell of a scheme.
+pub type CellOf<const D: usize, S> = Cell<<S as Scheme<D, f64>>::State, <S as Scheme<D, f64>>::Ground>;
+
+/// Where the numbers of a field come from.
+pub enum Value<const D: usize, S: Scheme<D, f64>> {
+    /// A component of the state.
+    Component(usize),
+    /// A function of the cell.
+    Of(fn(&CellOf<D, S>) -> f64),
+}
+
+/// A field that a run shows, in the order of the frames.
+pub struct Field<const D: usize, S: Scheme<D, f64>> {
+    /// Its name, one of the model's quantities.
+    pub name: &'static str,
+    /// Its numbers.
+    pub value: Value<D, S>,
+    /// Columns and rows of the engine's grid that the field leaves out at the upper ends.
+    pub short: usize,
+}
+
+/// Numbers of a summary by their keys.
+pub type Numbers = Vec<(String, f64)>;
+
+/// What a model adds to its scheme to be run and shown.
+pub trait Physics<const D: usize>: Send + Sync + 'static {
+    /// The scheme.
+    type Scheme: Kernel<D>;
+    /// Its name, as the case file writes it.
+    fn scheme(&self) -> &str;
+    /// The fields that a run shows.
+    fn fields(&self) -> Vec<Field<D, Self::Scheme>>;
+    /// The mass has a speed along its bed, so that speeds, energies, and maps of peaks and times are kept.
+    fn has_speed(&self) -> bool {
+        true
+    }
+    /// A thinner layer is a film: it is held.
+    fn film(&self) -> f64 {
+        0.0
+    }
+    /// Change what is fixed in the cells (sources) before a step that ends at `until` at the latest; the time at which they
+    /// change again.
+    fn prepare(&mut self, _simulation: &mut Simulation<D, Self::Scheme>, _until: f64) -> f64 {
+        f64::INFINITY
+    }
+    /// Fields have places without a value.
+    fn blanks(&self) -> bool {
+        false
+    }
+    /// Put "no value" (NaN) into those places, in a part of a field from number `from` on.
+    fn blank(&self, _field: usize, _from: usize, _values: &mut [f64]) {}
+    /// See [`Run::is_steady`].
+    fn is_steady(&self, _simulation: &Simulation<D, Self::Scheme>, _rate: f64) -> bool {
+        false
+    }
+    /// See [`Run::is_equilibrium`].
+    fn is_equilibrium(&self) -> bool {
+        false
+    }
+    /// See [`Run::maps`].
+    fn maps(&self, _simulation: &mut Simulation<D, Self::Scheme>) -> Maps {
+        Vec::new()
+    }
+    /// Elevation of the bed in every cell \[m\], where the engine holds it; empty elsewhere.
+    fn elevation(&self, _simulation: &Simulation<D, Self::Scheme>) -> Vec<f64> {
+        Vec::new()
+    }
+    /// See [`Run::numbers`].
+    fn numbers(&self, _simulation: &Simulation<D, Self::Scheme>, _record: &Record) -> Numbers {
+        Numbers::default()
+    }
+}
+
+/// A simulation with its physics.
+pub struct Simulated<const D: usize, P: Physics<D>> {
+    simulation: Simulation<D, P::Scheme>,
+    physics: P,
+    fields: Vec<Field<D, P::Scheme>>,
+    plane: Plane,
+    record: Record,
+    tracks_energy: bool,
+}
+
+impl<const D: usize, P: Physics<D>> Simulated<D, P> {
+    /// The run of a simulation whose cells lie on `plane`.
+    pub fn new(mut simulation: Simulation<D, P::Scheme>, physics: P, plane: Plane) -> Self {
+        if physics.has_speed() {
+            simulation.keep_maps();
+        }
+        let totals = simulation.totals();
+        let record = Record {
+            initial: totals.volume,
+            peak_speed: simulation.speed(),
+            peak_energy: totals.energy,
+            energy: totals.energy,
+            wet_cells: totals.wet,
+            stepping: Duration::ZERO,
+        };
+        let fields = physics.fields();
+        Simulated { simulation, physics, fields, plane, record, tracks_energy: false }
+    }
+
+    /// Shape of a field: rows and columns.
+    fn shape(&self, field: &Field<D, P::Scheme>) -> [usize; 2] {
+        let Layout { columns, rows, .. } = *self.simulation.layout();
+        [if D > 1 { rows - field.short } else { rows }, columns - field.short]
+    }
+
+    fn value(&self, field: &Field<D, P::Scheme>, from: usize, values: &mut [f64]) {
+        let [_, columns] = self.shape(field);
+        match field.value {
+            Value::Component(k) => {
+                let part = &self.simulation.arrays().components()[k];
+                let layout = self.simulation.layout();
+                let (mut number, mut rest) = (from, values);
+                while !rest.is_empty() {
+                    let (i, j) = (number % columns, number / columns);
+                    let (row, after) = rest.split_at_mut((columns - i).min(rest.len()));
+                    row.copy_from_slice(&part[layout.place(i as isize, j as isize)..][..row.len()]);
+                    number += row.len();
+                    rest = after;
+                }
+            }
+            Value::Of(value) => self.simulation.fill(columns, from, values, value),
+        }
+    }
+}
+
+impl<const D: usize, P: Physics<D>> Run for Simulated<D, P> {
+    fn plane(&self) -> &Plane {
+        &self.plane
+    }
+    fn stepper(&self) -> &dyn Stepper {
+        &self.simulation
+    }
+    fn stepper_mut(&mut self) -> &mut dyn Stepper {
+        &mut self.simulation
+    }
+    fn scheme(&self) -> &str {
+        self.physics.scheme()
+    }
+    fn record(&self) -> &Record {
+        &self.record
+    }
+    fn has_speed(&self) -> bool {
+        self.physics.has_speed()
+    }
+    fn film(&self) -> f64 {
+        self.physics.film()
+    }
+    fn track_energy(&mut self) {
+        self.tracks_energy = true;
+    }
+
+    fn step(&mut self, until: f64) -> Result<f64, Failure> {
+        let change = self.physics.prepare(&mut self.simulation, until);
+        let until = if self.simulation.is_adaptive() { until.min(change) } else { until };
+        if !self.simulation.wanted_step().is_finite() && !until.is_finite() {
+            return Ok(f64::INFINITY);
+        }
+        let begun = Instant::now();
+        let advanced = self.simulation.advance(until);
+        self.record.stepping += begun.elapsed();
+        let dt = advanced?;
+        self.record.peak_speed = self.record.peak_speed.max(self.simulation.speed());
+        if self.tracks_energy {
+            self.simulation.take_sums();
+            self.record.energy = self.simulation.totals().energy;
+            self.record.peak_energy = self.record.peak_energy.max(self.record.energy);
+        }
+        Ok(dt)
+    }
+    fn is_steady(&self, rate: f64) -> bool {
+        self.physics.is_steady(&self.simulation, rate)
+    }
+    fn is_equilibrium(&self) -> bool {
+        self.physics.is_equilibrium()
+    }
+
+    fn field(&self, name: &str) -> Option<FieldView<'_>> {
+        let number = self.fields.iter().position(|field| field.name == name)?;
+        let field = &self.fields[number];
+        let (shape, layout) = (self.shape(field), self.simulation.layout());
+        if let (Value::Component(k), false) = (&field.value, self.physics.blanks()) {
+            let values = Cow::Borrowed(self.simulation.arrays().components()[*k].as_slice());
+            return Some(FieldView { values, start: layout.place(0, 0), shape, row: layout.stride });
+        }
+        let mut values = vec![0.0; shape[0] * shape[1]];
+        self.fill(number, 0, &mut values);
+        Some(FieldView { values: values.into(), start: 0, shape, row: shape[1] })
+    }
+    fn fill(&self, field: usize, from: usize, values: &mut [f64]) {
+        self.value(&self.fields[field], from, values);
+        self.physics.blank(field, from, values);
+    }
+    fn take_totals(&mut self) -> Totals {
+        self.simulation.take_sums();
+        let totals = self.simulation.totals();
+        self.record.wet_cells = totals.wet;
+        totals
+    }
+
+    fn maps(&mut self) -> Maps {
+        self.physics.maps(&mut self.simulation)
+    }
+    fn peaks(&self) -> Maps {
+        let (layout, maps) = (self.simulation.layout(), self.simulation.maps());
+        let named = maps.into_iter().flat_map(granflow_engine::Maps::named);
+        named.map(|(name, map)| (name, layout.unpadded(map))).collect()
+    }
+    fn into_peaks(self: Box<Self>) -> Maps {
+        self.simulation.into_maps()
+    }
+    fn place(&self) -> Plane {
+        self.plane.clone().with_bed(|| self.physics.elevation(&self.simulation))
+    }
+    fn numbers(&self) -> Numbers {
+        self.physics.numbers(&self.simulation, &self.record)
+    }
+
+    fn save(&self) -> Saved<'_> {
+        let maps = self.simulation.maps().into_iter().flat_map(granflow_engine::Maps::named);
+        Saved {
+            clock: self.simulation.clock(),
+            state: self
+                .simulation
+                .arrays()
+                .components()
+                .iter()
+                .map(|part| Cow::Borrowed(part.as_slice()))
+                .collect(),
+            maps: maps.map(|(name, map)| (name, Cow::Borrowed(map))).collect(),
+            at_rest: self.simulation.at_rest(),
+            record: self.record,
+        }
+    }
+    fn restore(&mut self, saved: Saved<'static>) -> Result<(), String> {
+        let Saved { clock, state, mut maps, at_rest, record } = saved;
+        let state = granflow_engine::Field::of(state.into_iter().map(Cow::into_owned).collect());
+        if !self.simulation.restore(&clock, state) {
+            return Err("its state has another shape".to_owned());
+        }
+        if at_rest {
+            self.simulation.sleep_all();
+        }
+        for (name, map) in self.simulation.maps_mut() {
+            let taken = maps.iter().position(|(own, values)| *own == name && values.len() == map.len());
+            let Some(k) = taken else {
+                return Err(format!("its map {name} is missing or has another shape"));
+            };
+            map.copy_from_slice(&maps.swap_remove(k).1);
+        }
+        self.record = record;
+        Ok(())
+    }
+}

@@ -1,0 +1,114 @@
+//! A run as it ends: maps, figures, and why.
+
+use super::Files;
+use super::writer::Writer;
+use crate::case::FileKind;
+use crate::model::Plane;
+use crate::output::frames::Frames;
+use crate::output::ledger::{Entry, mass_error, sum};
+use crate::output::summary::{StopReason, Summary};
+use crate::results::Finished;
+use crate::run::{Maps, Run, Until};
+use std::path::PathBuf;
+
+/// A finished run but for its series and its ledger, which the writer has.
+#[derive(Debug)]
+pub(super) struct Ending {
+    directory: PathBuf,
+    files: Vec<FileKind>,
+    case: String,
+    case_text: String,
+    film: f64,
+    plane: Plane,
+    maps: Maps,
+    summary: Summary,
+}
+
+impl Ending {
+    /// What there is now.
+    pub fn of(files: &Files, run: &mut dyn Run, reason: StopReason) -> Ending {
+        let end = run.maps();
+        let mut maps = run.peaks();
+        maps.extend(end);
+        Ending::with(files, run.place(), maps, summary(files, run, reason))
+    }
+
+    /// What there is at the end, and the writer.
+    pub fn last(files: Files, mut run: Box<dyn Run>, reason: StopReason) -> (Ending, Writer) {
+        run.stepper_mut().release_buffers();
+        let end = run.maps();
+        let summary = summary(&files, &*run, reason);
+        let plane = run.place();
+        let mut maps = run.into_peaks();
+        maps.extend(end);
+        let ending = Ending::with(&files, plane, maps, summary);
+        (ending, files.writer)
+    }
+
+    fn with(files: &Files, plane: Plane, maps: Maps, summary: Summary) -> Ending {
+        Ending {
+            directory: files.directory.clone(),
+            files: files.plan.files.clone(),
+            case: files.plan.resolved(),
+            case_text: files.plan.text(),
+            film: files.film,
+            plane,
+            maps,
+            summary,
+        }
+    }
+
+    /// Put it together.
+    pub fn finished(self, frames: Frames, ledger: Vec<Entry>) -> Finished {
+        let Ending { directory, files, case, case_text, film, plane, mut maps, mut summary } = self;
+        plane.derive(&mut maps, &mut summary);
+        Finished { directory, files, case, case_text, plane, frames, ledger, maps, film, summary }
+    }
+}
+
+/// The figures of the run as they stand.
+fn summary(files: &Files, run: &dyn Run, stop_reason: StopReason) -> Summary {
+    let (stepper, record, plan, plane) = (run.stepper(), run.record(), &files.plan, run.plane());
+    let totals = run.totals();
+    let out = stepper.outflow();
+    let (gone, mass_in, initial) = (sum(out), stepper.poured(), record.initial);
+    let wall = files.begun.elapsed().as_secs_f64();
+    let ended = matches!(stop_reason, StopReason::AtRest | StopReason::Steady);
+    let speed = |speed: f64| if run.has_speed() { speed } else { f64::NAN };
+    let mut summary = Summary {
+        title: plan.title.clone(),
+        model: plan.model.to_owned(),
+        scheme: run.scheme().to_owned(),
+        cells: (plane.x.len() * plane.y.len().max(1)) as u64,
+        steps: run.steps(),
+        time: run.time(),
+        stop_reason,
+        stopping_time: (ended && !run.is_equilibrium()).then(|| run.time()),
+        mass_initial: initial,
+        mass_final: totals.volume,
+        mass_in,
+        mass_out: gone,
+        mass_error: mass_error(run, &totals),
+        film_volume: totals.film,
+        max_speed_final: speed(totals.speed),
+        max_speed: speed(record.peak_speed),
+        runout: None,
+        reach_angle: None,
+        wall_seconds: wall,
+        stepping_seconds: record.stepping.as_secs_f64(),
+        cell_updates_per_second: (stepper.updates() - files.updates) as f64 / wall,
+        threads: rayon::current_num_threads() as u64,
+        version: env!("CARGO_PKG_VERSION").to_owned(),
+        extra: serde_json::Map::new(),
+    };
+    for (name, value) in plane.outlets().iter().zip(out) {
+        summary.add(&format!("mass_out_{name}"), value);
+    }
+    for (name, value) in run.numbers() {
+        summary.add(&name, value);
+    }
+    if let Some(Until::Steady { rate }) = plan.ends.until {
+        summary.add("steady_rate", rate);
+    }
+    summary
+}

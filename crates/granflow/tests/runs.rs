@@ -1,0 +1,135 @@
+//! A run one can hold: memory, views, save and restore, frames, all without a disk.
+
+use granflow::Case;
+use granflow::build::{Avalanche, Grid};
+use granflow::case::Frames;
+use granflow::run::{Ends, Run, Until, drive};
+use granflow::sinks::{Callback, Memory};
+
+const PILE: &str = r#"
+model = "hadeler_kuttler"
+grid = { x = { from = 0.0, to = 1.0, cells = 16 }, y = { from = 0.0, to = 1.0, cells = 12 } }
+table.cut = [{ box = [0.5, 1.0, 0.5, 1.0] }]
+source = [{ rate.formula = "0.5*max(0, sin(3*t))*(1 + x)" }, { rate = 0.25, on.box = [0.0, 0.4, 0.0, 0.4], from = 0.3, to = 0.9 }]
+time.end = 1.5
+"#;
+
+const SLIDE: &str = r#"
+grid = { x = { from = -3.0, to = 6.0, cells = 40 }, y = { from = -3.0, to = 3.0, cells = 24 } }
+material = { epsilon = 0.4, slope = "12 deg", friction.coulomb = { angle = "22 deg" } }
+initial.thickness.cap = { height = 1.0, radius = 1.5 }
+scheme.name = "balanced_2"
+time = { until = "rest", end = 50.0 }
+"#;
+
+fn start(text: &str) -> Box<dyn Run> {
+    Case::parse(text, "test.toml").unwrap().check().unwrap().start().unwrap()
+}
+
+/// All fields, as bits.
+fn bits(run: &dyn Run) -> Vec<u64> {
+    let names: Vec<String> = run.plane().series().into_iter().map(|field| field.name).collect();
+    names
+        .iter()
+        .flat_map(|name| run.field(name).unwrap().iter().map(f64::to_bits).collect::<Vec<_>>())
+        .collect()
+}
+
+#[test]
+fn a_run_is_saved_and_taken_up_again_bit_for_bit() {
+    for text in [PILE, SLIDE] {
+        let (mut whole, mut parts) = (start(text), start(text));
+        whole.until(0.4).unwrap();
+        let saved = whole.save().into_owned();
+        whole.until(1.2).unwrap();
+        parts.until(0.1).unwrap(); // somewhere else
+        parts.restore(saved).unwrap();
+        assert_eq!(parts.time(), 0.4);
+        parts.until(1.2).unwrap();
+        assert!(bits(&*whole) == bits(&*parts));
+        assert_eq!(whole.record().peak_speed, parts.record().peak_speed);
+        assert_eq!(whole.peaks().len(), parts.peaks().len());
+        for ((name, a), (_, b)) in whole.peaks().iter().zip(parts.peaks()) {
+            assert!(a.iter().zip(&b).all(|(a, b)| a.to_bits() == b.to_bits()), "{name}");
+        }
+    }
+}
+
+#[test]
+fn what_does_not_fit_is_refused_in_words() {
+    let (slide, mut pile) = (start(SLIDE), start(PILE));
+    let refused = pile.restore(slide.save().into_owned()).unwrap_err();
+    assert!(refused.contains("another shape"), "{refused}");
+}
+
+#[test]
+fn a_field_of_the_state_is_shown_without_a_copy() {
+    let mut run = start(SLIDE);
+    run.until(0.5).unwrap();
+    let view = run.field("thickness").unwrap();
+    assert!(view.is_borrowed());
+    assert_eq!(view.shape, [24, 40]);
+    let mut filled = vec![0.0; 24 * 40];
+    run.fill(0, 0, &mut filled);
+    assert!(view.iter().eq(filled.iter().copied()));
+    assert_eq!(view.at(7, 5), filled[5 * 40 + 7]);
+    assert!(run.field("velocity_x").is_some_and(|view| !view.is_borrowed()));
+    assert!(run.field("depth").is_none());
+    let pile = start(PILE);
+    assert!(pile.field("rolling_layer").unwrap().iter().any(f64::is_nan), "the cut corner has no value");
+}
+
+#[test]
+fn frames_come_at_their_instants_and_end_at_rest() {
+    let mut run = start(SLIDE);
+    let mut frames = run.frames(0.5);
+    let mut times = Vec::new();
+    while let Some(run) = frames.next().unwrap() {
+        times.push(run.time());
+    }
+    assert!(times.len() > 3, "{times:?}");
+    let (last, regular) = times.split_last().unwrap();
+    assert!(regular.iter().enumerate().all(|(k, time)| *time == 0.5 * k as f64), "{times:?}");
+    assert!(run.at_rest() && run.time() == *last && run.stepper().speed() == 0.0);
+}
+
+#[test]
+fn sinks_see_every_step_and_memory_keeps_what_it_is_asked_for() {
+    let mut run = start(SLIDE);
+    let mut memory = Memory::begin(&mut *run, Frames::Every(1.0), &["thickness"]);
+    let mut steps = 0;
+    let mut count = Callback(|run: &dyn Run| {
+        steps += 1;
+        assert_eq!(run.steps(), steps);
+    });
+    let ends = Ends {
+        until: Some(Until::Rest { speed: None }),
+        time: Some(50.0),
+        steps: None,
+        kinetic_energy: None,
+    };
+    drive(&mut *run, &ends, &mut [&mut count, &mut memory]).unwrap();
+    let recording = memory.finish(&mut *run);
+    assert_eq!(steps, run.steps());
+    assert_eq!(recording.fields.len(), 1);
+    assert_eq!(recording.times.len(), recording.field("thickness").unwrap().len());
+    assert_eq!(recording.ledger.len(), recording.times.len());
+    assert!(recording.ledger.iter().all(|line| line.mass_error.abs() < 1e-13));
+    assert!(recording.map("deposit").is_some() && recording.map("peak_speed").is_some());
+}
+
+#[test]
+fn a_builder_and_a_case_make_the_same_run() {
+    let case = r#"
+grid.x = { from = -6.0, to = 6.0, cells = 240 }
+material = { epsilon = 0.4, friction.coulomb = { mu = 0.32 } }
+initial.thickness.steps = { at = [-1.0, 1.0], values = [0.3, 2.3, 0.3] }
+time = { until = "rest", end = 50.0 }
+"#;
+    let column = |[x]: [f64; 1]| if x > -1.0 && x <= 1.0 { 2.3 } else { 0.3 };
+    let grid = Grid::line([-6.0, 6.0], 240);
+    let built = Avalanche::on_plane(grid, 0.0).scaled(0.4).mu(0.32).thickness(column).start();
+    let (mut built, mut read) = (built.unwrap(), start(case));
+    assert!(built.to_rest(50.0).unwrap() && read.to_rest(50.0).unwrap());
+    assert!(bits(&*built) == bits(&*read));
+}
