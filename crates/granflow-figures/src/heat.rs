@@ -1,5 +1,7 @@
 //! A field seen from above: over a plane, or over space and time (the "Draufsicht" of the papers).
 
+use tiny_skia::Pixmap;
+
 use super::axes::{
     Axis, Panel, RIM, Scale, bottom_room, extent, heading, heading_height, left_room, widened,
 };
@@ -119,29 +121,88 @@ pub(super) fn check_coordinates(figure: &str, what: &str, values: &[f64]) -> Res
     Err(FigureError::empty(figure, format!("{what} do not increase")))
 }
 
-impl Figure for HeatMap<'_> {
-    fn draw(&self) -> Result<Picture, FigureError> {
-        let (nx, ny) = (self.xs.len(), self.ys.len());
-        check_coordinates(self.title, "abscissae", self.xs)?;
-        check_coordinates(self.title, "ordinates", self.ys)?;
-        FigureError::same_length(self.title, "the field", self.values.len(), nx * ny)?;
+impl HeatMap<'_> {
+    /// The range of the colours.
+    fn range(&self) -> Result<[f64; 2], FigureError> {
         let none = || FigureError::empty(self.title, "no finite value in the field");
         let found = extent(self.values.iter().copied());
         let flat = found.is_some_and(|[low, high]| high - low <= 1e-9 * high.abs().max(low.abs()));
         let range = self.quantity.range_of(found.map(|r| if flat { widened(r, 0.0) } else { r }), 0.0);
-        let range = self.colours.range(range.ok_or_else(none)?);
+        Ok(self.colours.range(range.ok_or_else(none)?))
+    }
 
+    /// Width and height of the panel: two lengths keep their proportions.
+    fn size(&self, x: Scale, y: Scale) -> (f64, f64) {
+        if self.frame != Frame::Plane {
+            return (590.0, 400.0);
+        }
+        let ratio = (y.range[1] - y.range[0]) / (x.range[1] - x.range[0]);
+        let (wide, high) = if ratio < 0.9 { (620.0, 620.0 * ratio) } else { (560.0 / ratio, 560.0) };
+        (wide.max(150.0), high.max(110.0)) // beyond 4 to 1 the scales part
+    }
+
+    /// The colours of the panel's pixels, with the lines of equal height.
+    fn image(&self, pixels: Pixels, range: [f64; 2]) -> Result<Option<Pixmap>, FigureError> {
+        let (across, up) = pixels.among(self.xs, self.ys);
+        let field = Lattice { values: self.values, nx: self.xs.len() };
+        let table = self.colours.table();
+        let Pixels { columns, rows, .. } = pixels;
+        let heights = self.levels.map_or(Ok(Vec::new()), |levels| levels.heights(self.title, pixels))?;
+        let surface = Elevations { elevation: &heights, columns, rows };
+        Ok(paint((columns, rows), |column, row| {
+            let value = field.at(across[column], up[row]);
+            let colour = value.is_finite().then(|| pick(&table, value, range))?;
+            let Some(levels) = &self.levels else { return Some(colour) };
+            let (height, slope) = (heights[row * columns + column], surface.slope(column, row));
+            let lines = Contours { interval: levels.interval };
+            Some(lines.against_colour(colour, height, slope))
+        }))
+    }
+}
+
+impl Levels<'_> {
+    /// The field at every pixel.
+    fn heights(&self, title: &str, pixels: Pixels) -> Result<Vec<f64>, FigureError> {
+        FigureError::same_length(title, "the levels", self.values.len(), self.xs.len() * self.ys.len())?;
+        let lattice = Lattice { values: self.values, nx: self.xs.len() };
+        let (along, up) = pixels.among(self.xs, self.ys);
+        Ok(up.into_iter().flat_map(|up| along.iter().map(move |&along| lattice.at(along, up))).collect())
+    }
+}
+
+/// The pixels of a panel: how many, and the ranges that they cover.
+#[derive(Debug, Clone, Copy)]
+struct Pixels {
+    columns: usize,
+    rows: usize,
+    x: [f64; 2],
+    y: [f64; 2],
+}
+
+impl Pixels {
+    /// Where the columns and the rows are among coordinates.
+    fn among(self, xs: &[f64], ys: &[f64]) -> (Vec<Between>, Vec<Between>) {
+        let Self { columns, rows, x, y } = self;
+        let at = |k: usize, n: usize, [low, high]: [f64; 2]| low + (high - low) * (k as f64 + 0.5) / n as f64;
+        let across = (0..columns).map(|k| Between::among(at(k, columns, x), xs)).collect();
+        let up = (0..rows).map(|k| Between::among(at(rows - 1 - k, rows, y), ys)).collect();
+        (across, up)
+    }
+}
+
+impl Figure for HeatMap<'_> {
+    fn draw(&self) -> Result<Picture, FigureError> {
+        check_coordinates(self.title, "abscissae", self.xs)?;
+        check_coordinates(self.title, "ordinates", self.ys)?;
+        let cells = self.xs.len() * self.ys.len();
+        FigureError::same_length(self.title, "the field", self.values.len(), cells)?;
+        let range = self.range()?;
         let x = Scale::new(Self::covered(self.xs, true));
         let y = Scale::new(Self::covered(self.ys, self.frame == Frame::Plane));
         let (x_caption, y_caption) = (self.x.caption(), self.y.caption());
         let bar = ColourBar { colours: self.colours, range, caption: self.quantity.caption() };
         let top = heading_height(self.title, self.subtitle);
-        let (mut wide, mut high) = (590.0, 400.0);
-        if self.frame == Frame::Plane {
-            let ratio = (y.range[1] - y.range[0]) / (x.range[1] - x.range[0]);
-            (wide, high) = if ratio < 0.9 { (620.0, 620.0 * ratio) } else { (560.0 / ratio, 560.0) };
-            (wide, high) = (wide.max(150.0), high.max(110.0)); // beyond 4 to 1 the scales part
-        }
+        let (wide, high) = self.size(x, y);
         let left = RIM + left_room(&y.upright_ticks(high), &y_caption);
         let room = 16.0 + bar.room(high);
         let (width, height) = (left + wide + room + RIM, top + high + bottom_room(&x_caption) + RIM);
@@ -151,38 +212,8 @@ impl Figure for HeatMap<'_> {
         let area = Area { left, top, width: wide, height: high };
         let panel = Panel::within(area, x, y, x_caption, y_caption);
         let (columns, rows) = panel.area.pixels();
-        let at = |k: usize, n: usize, [low, high]: [f64; 2]| low + (high - low) * (k as f64 + 0.5) / n as f64;
-        let across: Vec<_> = (0..columns).map(|k| Between::among(at(k, columns, x.range), self.xs)).collect();
-        let up: Vec<_> =
-            (0..rows).map(|k| Between::among(at(rows - 1 - k, rows, y.range), self.ys)).collect();
-        let field = Lattice { values: self.values, nx };
-        let table = self.colours.table();
-        let mut heights = Vec::new();
-        if let Some(levels) = &self.levels {
-            FigureError::same_length(
-                self.title,
-                "the levels",
-                levels.values.len(),
-                levels.xs.len() * levels.ys.len(),
-            )?;
-            let lattice = Lattice { values: levels.values, nx: levels.xs.len() };
-            let along: Vec<_> =
-                (0..columns).map(|k| Between::among(at(k, columns, x.range), levels.xs)).collect();
-            heights = (0..rows)
-                .map(|k| Between::among(at(rows - 1 - k, rows, y.range), levels.ys))
-                .flat_map(|up| along.iter().map(move |&along| lattice.at(along, up)))
-                .collect();
-        }
-        let surface = Elevations { elevation: &heights, columns, rows };
-        let image = paint((columns, rows), |column, row| {
-            let value = field.at(across[column], up[row]);
-            let colour = value.is_finite().then(|| pick(&table, value, range))?;
-            let Some(levels) = &self.levels else { return Some(colour) };
-            let (height, slope) = (heights[row * columns + column], surface.slope(column, row));
-            let lines = Contours { interval: levels.interval };
-            Some(lines.against_colour(colour, height, slope))
-        });
-        if let Some(image) = image {
+        let pixels = Pixels { columns, rows, x: x.range, y: y.range };
+        if let Some(image) = self.image(pixels, range)? {
             canvas.image(&image, [panel.area.left, panel.area.top]);
         }
         canvas.clip(Some(panel.area));

@@ -1,7 +1,7 @@
 //! What everything after a run knows of a model: a table of quantities, words, and functions that draw it.
 //!
-//! Files, report, animation and `granflow plot` go over these and name no model. A model gives one [`Model`] and, for
-//! each kind of place that it flows on, one [`Domain`]; the models of this library stand in [`crate::models`].
+//! Files, report, animation and `granflow plot` go over these and name no model. A model gives one [`Model`] and,
+//! for each kind of place that it flows on, one [`Domain`]; the models of this library stand in [`crate::models`].
 
 mod domain;
 #[cfg(feature = "figures")]

@@ -1,7 +1,8 @@
 //! The files of a run: one module per format, plain data in, files out.
 //!
-//! Nothing here knows the numerics. Every file under its final name is complete at every instant: [`whole_file`] writes
-//! beside the target, syncs and renames; the two files that grow ([`frames`], [`ledger`]) take back a torn end.
+//! Nothing here knows the numerics. Every file under its final name is complete at every instant: [`whole_file`]
+//! writes beside the target, syncs and renames; the two files that grow ([`frames`], [`ledger`]) take back a torn
+//! end.
 
 mod base64;
 pub mod checkpoint;
@@ -99,10 +100,11 @@ fn cure(error: &io::Error) -> &'static str {
     }
 }
 
-/// Writes `path` as a whole: a temporary file in the same folder, filled by `fill`, synced, then renamed over `path`.
+/// Writes `path` as a whole: a temporary file in the same folder, filled by `fill`, synced, then renamed over
+/// `path`.
 ///
-/// Whoever opens `path` sees the old file or the new one, never a part. Missing folders are made. When anything fails the
-/// old file stays and the temporary one is removed.
+/// Whoever opens `path` sees the old file or the new one, never a part. Missing folders are made. When anything
+/// fails the old file stays and the temporary one is removed.
 ///
 /// # Errors
 /// [`Error::Io`] naming `path`, or the error of ours that `fill` wrapped by [`io::Error::other`].

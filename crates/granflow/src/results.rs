@@ -45,8 +45,8 @@ pub struct Finished {
     pub frames: Frames,
     /// The ledger.
     pub ledger: Vec<Entry>,
-    /// Maps of the whole run and of its end, by the names of the model's quantities; x fastest, the first row in the
-    /// south.
+    /// Maps of the whole run and of its end, by the names of the model's quantities; x fastest, the first row in
+    /// the south.
     pub maps: Maps,
     /// A thinner layer is a film.
     pub film: f64,

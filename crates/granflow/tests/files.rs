@@ -1,14 +1,20 @@
 //! One small run on a mountain and one on a chute: every kind of file opens and holds what the run left.
 
 use granflow::Case;
+use granflow::case::FileKind;
+use granflow::model::{At, Domain, Model, Plane, Quantity};
+use granflow::output::Precision;
+use granflow::output::netcdf::{Dataset, Values};
 use granflow::output::summary::StopReason;
 use granflow::raster::Raster;
-use granflow::results::{FilesError, Finished, Story};
+use granflow::results::{About, FilesError, Finished, Story, check_kinds, dataset};
 use granflow::run::Run;
 use granflow::session::{Options, RunError};
+use netcdf_reader::NcFile;
 use std::fmt::Write as _;
 use std::fs;
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Duration;
 
@@ -263,4 +269,79 @@ fn a_run_that_rests_is_resumed_as_it_is_and_an_older_checkpoint_is_none() {
     })
     .unwrap();
     assert!(!seen, "the checkpoint of the run before");
+}
+
+/// A sink in memory and the files of a run share one piece of code: the same bytes come out.
+#[test]
+fn series_in_memory_make_the_file_that_series_on_disk_make() {
+    let folder = tempfile::tempdir().unwrap();
+    let run =
+        begin(&slope(folder.path(), r#"["netcdf"]"#), &folder.path().join("out"), false, &mut |_| false);
+    let run = run.unwrap();
+    let mut frames = run.frames.again().unwrap();
+    let about = About { title: "A small slide".to_owned(), case: run.case.clone(), ..About::default() };
+    let of = |series| {
+        dataset(&run.plane, Precision::F64, frames.times().to_vec(), series, &run.maps, about.clone())
+            .unwrap()
+    };
+    let names: Vec<String> = frames.fields().iter().map(|field| field.name.clone()).collect();
+    let on_disk = of(names.iter().map(|name| (name.as_str(), Values::Stored(name.clone()))).collect());
+    let mut again = run.frames.again().unwrap();
+    let count = frames.times().len();
+    let mut read = |field| (0..count).map(|k| again.read(k, field).unwrap()).collect::<Vec<_>>();
+    let all: Vec<Vec<Vec<f64>>> = (0..names.len()).map(&mut read).collect();
+    let series = names.iter().zip(&all);
+    let in_memory = of(series.map(|(name, maps)| (name.as_str(), Values::Series(maps.into()))).collect());
+    let path = folder.path().join("again.nc");
+    on_disk.write(&path, Some(&mut frames)).unwrap();
+    assert!(fs::read(&path).unwrap() == in_memory.to_bytes().unwrap());
+    assert!(on_disk.to_bytes().unwrap_err().to_string().contains("needs the store of frames"));
+}
+
+/// A model from outside: water on a plane, its bed known at the nodes.
+static WATER: Model = Model {
+    name: "water",
+    quantities: &[
+        Quantity::series("depth", "depth of the water", ["1", "m"]),
+        Quantity::fixed("corners", "elevation of the nodes", ["1", "m"]).at(At::Nodes).exact(),
+        Quantity::map("flood", "largest depth", ["1", "m"]).with_maximum(),
+    ],
+    ..Model::PLAIN
+};
+
+#[derive(Debug)]
+struct Pond([f64; 3]);
+
+impl Domain for Pond {
+    fn model(&self) -> &'static Model {
+        &WATER
+    }
+    fn nodes(&self) -> Option<[&[f64]; 2]> {
+        Some([&self.0, &[]])
+    }
+    fn fixed(&self) -> Vec<(&'static str, std::borrow::Cow<'_, [f64]>)> {
+        vec![("corners", vec![1.0, 0.0, 1.0].into())]
+    }
+}
+
+#[test]
+fn a_model_from_outside_writes_its_result_by_its_table_of_quantities() {
+    let plane = Plane { x: vec![0.5, 1.5], y: Vec::new(), domain: Arc::new(Pond([0.0, 1.0, 2.0])) };
+    assert_eq!(
+        plane.series().iter().map(|f| (f.name.as_str(), f.length)).collect::<Vec<_>>(),
+        [("depth", 2)]
+    );
+    let made = |name: &'static str| -> Result<Dataset<'static>, String> {
+        let plane: &'static Plane = Box::leak(Box::new(plane.clone()));
+        let series = vec![(name, Values::Series(vec![vec![0.1, 0.2], vec![0.3, 0.4]].into()))];
+        dataset(plane, Precision::F32, vec![0.0, 1.0], series, &[], About::default())
+    };
+    assert_eq!(made("height").unwrap_err(), "the model water has no quantity height");
+    let file = NcFile::from_bytes(&made("depth").unwrap().to_bytes().unwrap()).unwrap();
+    assert_eq!(file.read_variable::<f32>("depth").unwrap().shape(), [2, 2]);
+    assert_eq!(file.read_variable::<f64>("corners").unwrap().as_slice().unwrap(), [1.0, 0.0, 1.0]);
+    assert_eq!(file.global_attribute("model").unwrap().value.as_string().unwrap(), "water");
+    let refused = check_kinds(&[FileKind::Netcdf, FileKind::Figures], &plane).unwrap_err().to_string();
+    assert!(refused.contains("figures") && refused.contains("water") && refused.contains("out of the list"));
+    assert!(check_kinds(&[FileKind::Netcdf, FileKind::Csv, FileKind::Vtk], &plane).is_ok());
 }

@@ -34,8 +34,9 @@ pub struct Model {
     pub outlets: [&'static str; 5],
     /// Words for people.
     pub words: Words,
-    /// Is the last instant of the series a result of its own, so that csv files show it beside the maps and vtk files
-    /// show the maps beside the series? A pile that grows has no other; an avalanche has a map of its deposit.
+    /// Is the last instant of the series a result of its own, so that csv files show it beside the maps and vtk
+    /// files show the maps beside the series? A pile that grows has no other; an avalanche has a map of its
+    /// deposit.
     pub last_instant: bool,
     /// The name of a scheme as figures write it.
     pub scheme_title: fn(&str) -> String,
@@ -43,7 +44,7 @@ pub struct Model {
     pub findings: fn(&Summary, f64) -> Findings,
     /// What is drawn of it; `None` for nothing.
     #[cfg(feature = "figures")]
-    pub pictures: Option<&'static Pictures>,
+    pub pictures: Option<&'static dyn Pictures>,
 }
 
 impl Model {
@@ -155,24 +156,35 @@ impl dyn Domain {
 
 /// What is drawn of a model, from a run or from its `result.nc`.
 #[cfg(feature = "figures")]
-#[derive(Debug)]
-pub struct Pictures {
+pub trait Pictures: fmt::Debug + Sync {
     /// The variables of `result.nc` without which it is no result of this model.
-    pub needed: &'static [&'static str],
-    /// The domain of a result, with these cell centres along x and y; else what is wrong with the file.
-    pub domain: fn(&ResultFile, [&[f64]; 2]) -> Result<Arc<dyn Domain>, String>,
+    fn needed(&self) -> &'static [&'static str];
+
+    /// The domain of a result, with these cell centres along x and y.
+    ///
+    /// # Errors
+    /// What is wrong with the file.
+    fn domain(&self, file: &ResultFile, centres: [&[f64]; 2]) -> Result<Arc<dyn Domain>, String>;
+
     /// The series that figures show, in one or two dimensions.
-    pub shown: fn(&dyn Domain, usize) -> &'static [&'static str],
+    fn shown(&self, domain: &dyn Domain, dimensions: usize) -> &'static [&'static str];
+
     /// The standard figures.
-    pub figures: for<'a> fn(&'a View<'a>, &'a dyn Domain) -> Vec<Drawing<'a>>,
+    fn figures<'a>(&self, view: &'a View<'a>, domain: &'a dyn Domain) -> Vec<Drawing<'a>>;
+
     /// The series that the animation shows.
-    pub film: &'static [&'static str],
+    fn film(&self) -> &'static [&'static str];
+
     /// What all pictures of the animation share, found from the instants that it shows.
-    pub scene: for<'a> fn(
-        &'a View<'a>,
-        &'a dyn Domain,
-        &mut Instants<'_>,
-    ) -> Result<Box<dyn Scene + 'a>, crate::output::Error>,
+    ///
+    /// # Errors
+    /// That of an instant which cannot be read.
+    fn scene<'a>(
+        &self,
+        view: &'a View<'a>,
+        domain: &'a dyn Domain,
+        instants: &mut Instants<'_>,
+    ) -> Result<Box<dyn Scene + 'a>, crate::output::Error>;
 }
 
 /// The series of [`Pictures::film`] at one instant after the other, read as they are asked for.

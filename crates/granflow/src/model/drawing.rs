@@ -56,8 +56,8 @@ pub fn save_all(drawings: &[Drawing], folder: &Path) -> Result<Vec<report::Figur
     Ok(figures.into_iter().flatten().collect())
 }
 
-/// The upper end of a range of colours: the greatest value, or where a few cells stand far above the others the value
-/// that one in 500 exceeds; 1 of nothing.
+/// The upper end of a range of colours: the greatest value, or where a few cells stand far above the others the
+/// value that one in 500 exceeds; 1 of nothing.
 pub fn colour_limit(values: impl Iterator<Item = f64>) -> f64 {
     let mut values: Vec<f64> = values.collect();
     values.sort_by(f64::total_cmp);

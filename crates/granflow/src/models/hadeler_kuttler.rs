@@ -32,6 +32,6 @@ pub static MODEL: Model = Model {
     words: Words { wet: "cells with sand", fastest: "rolling layer at most" },
     last_instant: true,
     #[cfg(feature = "figures")]
-    pictures: Some(&pictures::PICTURES),
+    pictures: Some(&pictures::Sandpile),
     ..Model::PLAIN
 };

@@ -51,7 +51,7 @@ pub static MODEL: Model = Model {
     scheme_title: |scheme| scheme.replace("verfahren_", "Verfahren "),
     findings,
     #[cfg(feature = "figures")]
-    pictures: Some(&pictures::PICTURES),
+    pictures: Some(&pictures::Avalanche),
     ..Model::PLAIN
 };
 

@@ -1,7 +1,8 @@
 //! The checkpoint: everything a run needs to go on bit for bit.
 //!
-//! Layout, all little endian: the line `granflow checkpoint 1`, a u32 length, that many bytes of JSON (version, case, step,
-//! names and lengths), then as raw f64 the time, the scalars and the arrays in that order, then the CRC-32 of all before.
+//! Layout, all little endian: the line `granflow checkpoint 1`, a u32 length, that many bytes of JSON (version,
+//! case, step, names and lengths), then as raw f64 the time, the scalars and the arrays in that order, then the
+//! CRC-32 of all before.
 
 use super::{Error, Precision, Summed, whole_file};
 use serde::{Deserialize, Serialize};
@@ -127,8 +128,8 @@ impl Checkpoint<'_> {
     }
 }
 
-/// Writes a checkpoint as [`Checkpoint::write`] does, from its [`Checkpoint::head`] and what `arrays` gives: the raw f64 of
-/// its arrays, one after the other.
+/// Writes a checkpoint as [`Checkpoint::write`] does, from its [`Checkpoint::head`] and what `arrays` gives: the
+/// raw f64 of its arrays, one after the other.
 pub(crate) fn write_from(
     path: &Path,
     head: &[u8],
@@ -146,14 +147,46 @@ impl Checkpoint<'static> {
     /// Reads the checkpoint of the case called `case`, every bit as it was written.
     ///
     /// # Errors
-    /// [`Error::Io`] if there is none; [`Error::Damaged`] if it is truncated or altered; [`Error::Mismatch`] if it was
-    /// written by another version of granflow (whose last bits may differ) or for another case.
+    /// [`Error::Io`] if there is none; [`Error::Damaged`] if it is truncated or altered; [`Error::Mismatch`] if it
+    /// was written by another version of granflow (whose last bits may differ) or for another case.
     pub fn read(path: &Path, case: &str) -> Result<Self, Error> {
         let unread = || Error::io(path, "read");
         let file = File::open(path).map_err(unread())?;
         let size = file.metadata().map_err(unread())?.len();
         let mut file =
             Hashed { from: BufReader::with_capacity(1 << 18, file), crc: crc32fast::Hasher::new() };
+        let header = Header::read(path, &mut file, size)?;
+        let mut front = file.numbers(1 + header.scalars.len()).map_err(unread())?;
+        let time = front.remove(0);
+        let mut arrays = Vec::new();
+        for (name, length) in &header.arrays {
+            arrays.push((name.clone(), Numbers::Double(file.numbers(*length).map_err(unread())?.into())));
+        }
+        let (computed, mut crc) = (file.crc.clone().finalize(), [0; 4]);
+        file.read_exact(&mut crc).map_err(unread())?;
+        if crc != computed.to_le_bytes() {
+            return Err(altered(path));
+        }
+        header.check(path, case)?;
+        let scalars = header.scalars.into_iter().zip(front).collect();
+        Ok(Self { case: header.case, step: header.step, time, scalars, arrays })
+    }
+
+    /// The array called `name`, which is then no longer in the checkpoint.
+    pub fn take(&mut self, name: &str) -> Option<Vec<f64>> {
+        let place = self.arrays.iter().position(|(own, _)| own == name)?;
+        Some(match self.arrays.swap_remove(place).1 {
+            Numbers::Double(values) => values.into_owned(),
+            Numbers::Single(values) => values.iter().map(|&value| value.into()).collect(),
+        })
+    }
+}
+
+impl Header {
+    /// Reads what stands before the numbers of a checkpoint of `size` bytes, and checks that it is as long as that
+    /// says.
+    fn read(path: &Path, file: &mut impl Read, size: u64) -> Result<Header, Error> {
+        let unread = || Error::io(path, "read");
         let mut magic = Vec::new();
         file.by_ref().take(MAGIC.len() as u64).read_to_end(&mut magic).map_err(unread())?;
         if magic != MAGIC {
@@ -170,11 +203,6 @@ impl Checkpoint<'static> {
             );
             Error::damaged(path, problem)
         };
-        let altered = || {
-            let problem = "the checkpoint does not match its checksum: it was altered or the disk failed; \
-                           start the run again without --resume";
-            Error::damaged(path, problem)
-        };
         let before = MAGIC.len() as u64 + 4;
         if size < before {
             return Err(short(before));
@@ -187,52 +215,42 @@ impl Checkpoint<'static> {
         }
         let mut header = vec![0; (front - before) as usize];
         file.read_exact(&mut header).map_err(unread())?;
-        let header: Header = serde_json::from_slice(&header).map_err(|_| altered())?;
+        let header: Header = serde_json::from_slice(&header).map_err(|_| altered(path))?;
         let lengths = header.arrays.iter().map(|(_, length)| *length as u64);
         let numbers = lengths.fold(1 + header.scalars.len() as u64, u64::saturating_add); // a damaged length may be huge
         let wanted = numbers.saturating_mul(8).saturating_add(4).saturating_add(front);
         if size != wanted {
-            return Err(if size < wanted { short(wanted) } else { altered() });
+            return Err(if size < wanted { short(wanted) } else { altered(path) });
         }
-        let mut front = file.numbers(1 + header.scalars.len()).map_err(unread())?;
-        let time = front.remove(0);
-        let mut arrays = Vec::new();
-        for (name, length) in header.arrays {
-            arrays.push((name, Numbers::Double(file.numbers(length).map_err(unread())?.into())));
-        }
-        let (computed, mut crc) = (file.crc.clone().finalize(), [0; 4]);
-        file.read_exact(&mut crc).map_err(unread())?;
-        if crc != computed.to_le_bytes() {
-            return Err(altered());
-        }
-        if header.granflow != VERSION {
+        Ok(header)
+    }
+
+    /// Checks that it is of this version of granflow and of the case called `case`.
+    fn check(&self, path: &Path, case: &str) -> Result<(), Error> {
+        if self.granflow != VERSION {
             let problem = format!(
                 "written by granflow {}, this is {VERSION}, so the run could not go on bit for bit; \
                  resume with that version or start again without --resume",
-                header.granflow
+                self.granflow
             );
             return Err(Error::mismatch(path, problem));
         }
-        if header.case != case {
+        if self.case != case {
             let problem = format!(
                 "the checkpoint is of another case ({}) than the one given ({case}); \
                  give the case as it was, another --out, or start again without --resume",
-                header.case
+                self.case
             );
             return Err(Error::mismatch(path, problem));
         }
-        let scalars = header.scalars.into_iter().zip(front).collect();
-        Ok(Self { case: header.case, step: header.step, time, scalars, arrays })
+        Ok(())
     }
+}
 
-    /// The array called `name`, which is then no longer in the checkpoint.
-    pub fn take(&mut self, name: &str) -> Option<Vec<f64>> {
-        let place = self.arrays.iter().position(|(own, _)| own == name)?;
-        Some(match self.arrays.swap_remove(place).1 {
-            Numbers::Double(values) => values.into_owned(),
-            Numbers::Single(values) => values.iter().map(|&value| value.into()).collect(),
-        })
-    }
+fn altered(path: &Path) -> Error {
+    let problem = "the checkpoint does not match its checksum: it was altered or the disk failed; \
+                   start the run again without --resume";
+    Error::damaged(path, problem)
 }
 
 /// A source that keeps the checksum of what passes.

@@ -7,8 +7,8 @@ use super::{Error, whole_file};
 use std::fmt::Write as _;
 use std::path::Path;
 
-/// Writes `time,<axis>,<field>,...` for every frame of the store, with the fields that have a value for each place of the
-/// axis. NaN stands as an empty cell.
+/// Writes `time,<axis>,<field>,...` for every frame of the store, with the fields that have a value for each place
+/// of the axis. NaN stands as an empty cell.
 ///
 /// # Errors
 /// [`Error::Invalid`] if no field has the length of the axis; [`Error::Io`].

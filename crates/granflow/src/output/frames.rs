@@ -1,9 +1,10 @@
 //! The growing store of a run: one frame per output instant, appended to disk, joined into the result files later.
 //!
-//! Layout, all little endian: the line `granflow frames 1`, a u32 length, that many bytes of JSON (precision, names and
-//! lengths of the fields), their CRC-32; then frames of equal size: the time (f64), the fields one after the other, the
-//! CRC-32 of time and fields. A frame is synced before [`Frames::append`] returns, so a crash can tear only the last one:
-//! whoever finds an earlier one torn knows that the disk has failed. The sync is waited for beside the steps.
+//! Layout, all little endian: the line `granflow frames 1`, a u32 length, that many bytes of JSON (precision,
+//! names and lengths of the fields), their CRC-32; then frames of equal size: the time (f64), the fields one after
+//! the other, the CRC-32 of time and fields. A frame is synced before [`Frames::append`] returns, so a crash can
+//! tear only the last one: whoever finds an earlier one torn knows that the disk has failed. The sync is waited
+//! for beside the steps.
 
 use super::{Error, Precision, Summed, whole_file};
 use serde::{Deserialize, Serialize};
@@ -87,7 +88,8 @@ impl Frames {
     /// Opens a store to go on with it; every frame is checked, a torn end is cut off and reported.
     ///
     /// # Errors
-    /// [`Error::Io`]; [`Error::Damaged`] if this is no store, or a frame before the last does not match its checksum.
+    /// [`Error::Io`]; [`Error::Damaged`] if this is no store, or a frame before the last does not match its
+    /// checksum.
     pub fn open(path: &Path) -> Result<(Self, Option<Torn>), Error> {
         let mut file =
             OpenOptions::new().read(true).write(true).open(path).map_err(Error::io(path, "open"))?;
@@ -136,8 +138,9 @@ impl Frames {
     /// Appends the frame at `time`, one slice per field in the order of [`Frames::fields`], and syncs it to disk.
     ///
     /// # Errors
-    /// [`Error::Invalid`] if number or lengths of the slices differ from the fields, or `time` is not later than the last;
-    /// [`Error::Io`] if the disk refuses: the store then ends with the frame before, as if this one had not been tried.
+    /// [`Error::Invalid`] if number or lengths of the slices differ from the fields, or `time` is not later than
+    /// the last; [`Error::Io`] if the disk refuses: the store then ends with the frame before, as if this one had
+    /// not been tried.
     pub fn append(&mut self, time: f64, values: &[&[f64]]) -> Result<(), Error> {
         if values.len() != self.fields.len()
             || self.fields.iter().zip(values).any(|(f, v)| f.length != v.len())
@@ -158,8 +161,8 @@ impl Frames {
         })
     }
 
-    /// Appends the frame at `time` and syncs it to disk; `body` gives its fields one after the other, in the precision of the
-    /// store, so that no frame needs to be in memory as a whole.
+    /// Appends the frame at `time` and syncs it to disk; `body` gives its fields one after the other, in the
+    /// precision of the store, so that no frame needs to be in memory as a whole.
     ///
     /// # Errors
     /// As [`Frames::append`], and those of `body`.

@@ -1,8 +1,9 @@
-//! Gives datasets of a finished HDF5 skeleton their place behind it, so that data can be streamed to the end of the file.
+//! Gives datasets of a finished HDF5 skeleton their place behind it, so that data can be streamed to the end of
+//! the file.
 //!
-//! A dataset that was written without data has a contiguous layout message whose address is undefined (HDF5 File Format
-//! Specification 3.0, IV.A.2.i); here each gets address and size, and the checksums of its header (IV.A.1.b) and of the
-//! superblock (II.A), which holds the end of the file, are made anew.
+//! A dataset that was written without data has a contiguous layout message whose address is undefined (HDF5 File
+//! Format Specification 3.0, IV.A.2.i); here each gets address and size, and the checksums of its header
+//! (IV.A.1.b) and of the superblock (II.A), which holds the end of the file, are made anew.
 
 use hdf5_core::jenkins_lookup3;
 
@@ -19,7 +20,8 @@ const LAYOUT_MESSAGE: u8 = 8;
 /// Version 3, class contiguous, address undefined.
 const UNPLACED: [u8; 10] = [3, 1, 255, 255, 255, 255, 255, 255, 255, 255];
 
-/// Places the datasets without data, in the order of their headers, behind `skeleton`; `sizes` are theirs in bytes.
+/// Places the datasets without data, in the order of their headers, behind `skeleton`; `sizes` are theirs in
+/// bytes.
 ///
 /// The error says what about the skeleton is not as expected; it is then to be thrown away.
 pub(super) fn allocate(skeleton: &mut [u8], sizes: &[u64]) -> Result<Vec<Block>, String> {
@@ -59,7 +61,8 @@ pub(super) fn allocate(skeleton: &mut [u8], sizes: &[u64]) -> Result<Vec<Block>,
     Ok(blocks)
 }
 
-/// An object header of version 2 without times and phase changes: "OHDR", version, flags, length, messages, checksum.
+/// An object header of version 2 without times and phase changes: "OHDR", version, flags, length, messages,
+/// checksum.
 struct Header {
     start: usize,
     /// One past the checksum.

@@ -259,7 +259,8 @@ pub fn mass_error(run: &dyn Run, totals: &Totals) -> f64 {
 
 /// The sum of `values` in their order, with Neumaier's compensation: its error does not grow with their number.
 ///
-/// A. Neumaier, Rundungsfehleranalyse einiger Verfahren zur Summation endlicher Summen, ZAMM 54 (1974), algorithm IV.
+/// A. Neumaier, Rundungsfehleranalyse einiger Verfahren zur Summation endlicher Summen, ZAMM 54 (1974), algorithm
+/// IV.
 #[must_use]
 pub fn sum(values: impl IntoIterator<Item = f64>) -> f64 {
     let mut sum = CompensatedSum::default();

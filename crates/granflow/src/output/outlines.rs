@@ -46,9 +46,9 @@ pub struct Outline {
 
 /// The area where `map` >= `threshold`, by marching squares on the centres with linear interpolation.
 ///
-/// NaN counts as below, and so does everything beyond the map's edge; towards both the outline runs along the cells' faces.
-/// At a saddle the mean of the four corners decides. Every vertex keeps a thousandth of the distance from a centre, so that no
-/// two rings touch. A trailing incomplete row is not looked at.
+/// NaN counts as below, and so does everything beyond the map's edge; towards both the outline runs along the
+/// cells' faces. At a saddle the mean of the four corners decides. Every vertex keeps a thousandth of the distance
+/// from a centre, so that no two rings touch. A trailing incomplete row is not looked at.
 #[must_use]
 pub fn contour(map: &[f64], lattice: Lattice, threshold: f64) -> MultiPolygon<f64> {
     if lattice.columns == 0 {
@@ -145,17 +145,19 @@ impl Squares<'_> {
         rings
     }
 
-    /// The pieces of outline in the square whose lower left centre is given, each from edge to edge, inside on the left.
+    /// The pieces of outline in the square whose lower left centre is given, each from edge to edge, inside on the
+    /// left.
     fn segments(&self, column: isize, row: isize) -> impl Iterator<Item = (Edge, Edge)> {
         let corners = [(column, row), (column + 1, row), (column + 1, row + 1), (column, row + 1)];
         let inside = corners.map(|(column, row)| self.inside(column, row));
-        // Edge number n runs from corner n to corner n + 1, counterclockwise. The outline comes in where the walk around the
-        // square goes from inside to outside, and leaves where it goes from outside to inside.
+        // Edge number n runs from corner n to corner n + 1, counterclockwise. The outline comes in where the walk
+        // around the square goes from inside to outside, and leaves where it goes from outside to inside.
         let edges: [Edge; 4] =
             [(column, row, true), (column + 1, row, false), (column, row + 1, true), (column, row, false)];
         let enters = |edge: &usize| inside[*edge] && !inside[(*edge + 1) % 4];
         let saddle = inside[0] == inside[2] && inside[1] == inside[3] && inside[0] != inside[1];
-        // At a saddle the insides are joined if the middle is inside: the outline then turns to the leaving edge ahead.
+        // At a saddle the insides are joined if the middle is inside: the outline then turns to the leaving edge
+        // ahead.
         let joined = saddle && {
             let values = corners.map(|(column, row)| self.value(column, row));
             values.into_iter().sum::<Option<f64>>().is_some_and(|sum| sum / 4.0 >= self.threshold)
@@ -185,7 +187,8 @@ impl Squares<'_> {
     }
 }
 
-/// Writes the outlines as GeoJSON, one feature each with name, threshold, unit and area in square units of the map.
+/// Writes the outlines as GeoJSON, one feature each with name, threshold, unit and area in square units of the
+/// map.
 ///
 /// RFC 7946 knows degrees only; the older member `crs`, which QGIS and GDAL read, names the map's system instead.
 ///

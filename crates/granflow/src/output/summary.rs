@@ -107,7 +107,8 @@ pub struct Summary {
     pub threads: u64,
     /// Version of granflow.
     pub version: String,
-    /// What else is worth knowing, such as `peak_thickness_max`; further keys of the same JSON object, in alphabetical order.
+    /// What else is worth knowing, such as `peak_thickness_max`; further keys of the same JSON object, in
+    /// alphabetical order.
     #[serde(flatten)]
     pub extra: serde_json::Map<String, serde_json::Value>,
 }

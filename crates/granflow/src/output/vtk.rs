@@ -29,7 +29,8 @@ impl Image {
     }
 }
 
-/// Writes one frame; a field has [`Image::cell_count`] or [`Image::node_count`] values, its rows from low y to high y.
+/// Writes one frame; a field has [`Image::cell_count`] or [`Image::node_count`] values, its rows from low y to
+/// high y.
 ///
 /// # Errors
 /// [`Error::Invalid`] if a field has another length; [`Error::Io`].

@@ -36,14 +36,14 @@ pub(super) fn write(run: &Finished, story: &Story) -> Result<PathBuf, FilesError
     let path = run.directory.join("animation.png");
     let Some(pictures) = story.domain.model().pictures else { return Ok(path) };
     let frames = run.frames.again()?;
-    let fields = pictures.film.iter().filter_map(|name| frames.position(name)).collect();
+    let fields = pictures.film().iter().filter_map(|name| frames.position(name)).collect();
     let count = frames.times().len();
     let every = count.div_ceil(PICTURES).max(1);
     let shown: Vec<usize> = (0..count).filter(|k| k % every == 0 || k + 1 == count).collect();
     let Some(&start) = shown.first() else { return Ok(path) };
     let mut reel = Reel { frames, fields, shown: shown.clone() };
     let mut instants = shown.iter().map(|&frame| reel.read(frame));
-    let scene = (pictures.scene)(&story.view, &*story.domain, &mut instants)?;
+    let scene = pictures.scene(&story.view, &*story.domain, &mut instants)?;
     let begin = reel.frames.times()[start];
     let first = scene.draw(begin, &reel.read(start)?).map_err(PictureError::from)?;
     let mut failure = None;

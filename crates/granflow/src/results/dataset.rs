@@ -21,8 +21,8 @@ pub struct About {
     pub stop_reason: String,
 }
 
-/// Everything that `result.nc` holds of a run: the series by name, one value per instant of `times`, then what is fixed, then
-/// the maps.
+/// Everything that `result.nc` holds of a run: the series by name, one value per instant of `times`, then what is
+/// fixed, then the maps.
 ///
 /// # Errors
 /// The name of a series or a map that is no quantity of the model.

@@ -36,8 +36,8 @@ pub fn check_kinds(files: &[FileKind], plane: &Plane) -> Result<(), FilesError> 
 }
 
 impl Finished {
-    /// Write `result.nc`, `summary.json` and every kind of file that the case asks for, beside each other; returns the paths
-    /// of the last.
+    /// Write `result.nc`, `summary.json` and every kind of file that the case asks for, beside each other; returns
+    /// the paths of the last.
     ///
     /// # Errors
     /// [`FilesError`] naming the file; the others are written nevertheless.
@@ -55,8 +55,8 @@ impl Finished {
         files
     }
 
-    /// Write every kind of file that the case asks for, beyond `result.nc`, `mass.csv` and `summary.json`; returns their
-    /// paths.
+    /// Write every kind of file that the case asks for, beyond `result.nc`, `mass.csv` and `summary.json`; returns
+    /// their paths.
     ///
     /// # Errors
     /// [`FilesError`] naming the file.

@@ -6,8 +6,8 @@ use crate::raster::RasterError;
 use rayon::prelude::*;
 use std::path::PathBuf;
 
-/// Write the maps of a run on a raster: nodata outside the elevation model, and for times where nothing came; thicknesses
-/// below the film are 0.
+/// Write the maps of a run on a raster: nodata outside the elevation model, and for times where nothing came;
+/// thicknesses below the film are 0.
 pub(super) fn write(run: &Finished) -> Result<Vec<PathBuf>, RasterError> {
     let Some(bed) = run.plane.domain.raster() else { return Ok(Vec::new()) };
     let folder = run.directory.join("rasters");

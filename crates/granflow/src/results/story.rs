@@ -32,7 +32,7 @@ fn instants(plane: &Plane, count: usize) -> Vec<usize> {
 /// The series that figures show.
 fn shown(plane: &Plane) -> &'static [&'static str] {
     let pictures = plane.model().pictures;
-    pictures.map_or(&[], |pictures| (pictures.shown)(&*plane.domain, plane.dimensions()))
+    pictures.map_or(&[], |pictures| pictures.shown(&*plane.domain, plane.dimensions()))
 }
 
 fn subtitle(plane: &Plane, scheme: &str, reason: &str, time: Option<f64>) -> String {
@@ -75,8 +75,8 @@ impl<'r> Story<'r> {
         Ok(Story { view, domain: plane.domain.clone() })
     }
 
-    /// The story in a `result.nc` of a model of this library, with the `mass.csv` and the `summary.json` beside it where they
-    /// are.
+    /// The story in a `result.nc` of a model of this library, with the `mass.csv` and the `summary.json` beside it
+    /// where they are.
     ///
     /// # Errors
     /// [`FilesError`] naming the file that is missing, damaged, or no result of granflow.
@@ -132,7 +132,7 @@ impl<'r> Story<'r> {
     /// [`FilesError`] naming the figure or the file.
     pub fn draw(&self, folder: &Path) -> Result<Vec<report::Figure>, FilesError> {
         let Some(pictures) = self.domain.model().pictures else { return Ok(Vec::new()) };
-        Ok(save_all(&(pictures.figures)(&self.view, &*self.domain), folder)?)
+        Ok(save_all(&pictures.figures(&self.view, &*self.domain), folder)?)
     }
 }
 
@@ -140,11 +140,11 @@ impl<'r> Story<'r> {
 fn model(
     file: &ResultFile,
     models: &[&'static Model],
-) -> Result<(&'static Model, &'static Pictures), String> {
+) -> Result<(&'static Model, &'static dyn Pictures), String> {
     let drawn = || models.iter().filter_map(|model| model.pictures.map(|pictures| (*model, pictures)));
     let named = file.text("model");
-    let missing = |pictures: &Pictures| pictures.needed.iter().find(|name| !file.has(name)).copied();
-    let fits = || drawn().find(|(_, pictures)| missing(pictures).is_none());
+    let missing = |pictures: &dyn Pictures| pictures.needed().iter().find(|name| !file.has(name)).copied();
+    let fits = || drawn().find(|(_, pictures)| missing(*pictures).is_none());
     let found = drawn().find(|(model, _)| model.name == named).or_else(fits).or_else(|| drawn().next());
     let found = found.ok_or("nothing draws any model")?;
     match missing(found.1) {
@@ -154,8 +154,8 @@ fn model(
 }
 
 /// The cells of a file, and what lies under them.
-fn plane(file: &ResultFile, pictures: &Pictures) -> Result<Plane, String> {
+fn plane(file: &ResultFile, pictures: &dyn Pictures) -> Result<Plane, String> {
     let (x, y) = (file.whole("x")?, file.optional("y")?);
-    let domain = (pictures.domain)(file, [&x, &y])?;
+    let domain = pictures.domain(file, [&x, &y])?;
     Ok(Plane { x, y, domain })
 }

@@ -168,7 +168,8 @@ fn middle(field: &[f64], columns: usize) -> Vec<f64> {
     (0..columns).map(|i| 0.5 * (field[a * columns + i] + field[b * columns + i])).collect()
 }
 
-/// u and v at the end along x through the middle and, where cells along x and y are as many, from corner to corner.
+/// u and v at the end along x through the middle and, where cells along x and y are as many, from corner to
+/// corner.
 fn sections<'a>(
     view: &'a View,
     table: &'a TableDomain,

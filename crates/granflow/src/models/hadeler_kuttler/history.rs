@@ -5,8 +5,8 @@ use crate::model::{Drawing, View};
 use crate::output::figures::{Axis, Curve, Figure, History, HistoryPanel, Style};
 use crate::output::ledger::Entry;
 
-/// The ledger of a sandpile: mass on the table, what was poured, what fell over which side; none where the ledger has
-/// fewer than two lines.
+/// The ledger of a sandpile: mass on the table, what was poured, what fell over which side; none where the ledger
+/// has fewer than two lines.
 pub(super) fn history<'a>(view: &'a View<'a>) -> Option<Drawing<'a>> {
     if view.ledger.len() < 2 {
         return None;

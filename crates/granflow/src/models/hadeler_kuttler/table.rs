@@ -120,7 +120,8 @@ impl TableDomain {
         standing.iter().zip(&self.height).map(|(u, b)| u + b).collect()
     }
 
-    /// The edges of the table in two dimensions, those with a wall or those without, as lines as long as they are straight.
+    /// The edges of the table in two dimensions, those with a wall or those without, as lines as long as they are
+    /// straight.
     #[must_use]
     pub fn edges(&self, walls: bool) -> Vec<[[f64; 2]; 2]> {
         if self.y_node.is_empty() {

@@ -114,7 +114,8 @@ impl Layer<'_> {
         if self.is_thickness() { REACHED } else { -0.5 }
     }
 
-    /// The values as they are shown, while they are. Films are fast and thin: a figure shows what a person would see.
+    /// The values as they are shown, while they are. Films are fast and thin: a figure shows what a person would
+    /// see.
     fn shown(&self) -> Vec<f64> {
         let value = |(&v, &h): (&f64, &f64)| match v {
             _ if self.is_thickness() => v,

@@ -1,4 +1,5 @@
-//! The path of a mass: the line along which most of it went, from the highest release to the farthest cell reached.
+//! The path of a mass: the line along which most of it went, from the highest release to the farthest cell
+//! reached.
 
 use super::terrain::{REACHED, TerrainDomain};
 use crate::model::View;
@@ -22,8 +23,8 @@ pub(super) struct PathLine {
 /// The path of a run on a mountain.
 ///
 /// Among all lines from the highest released cell to the reached cell farthest from it, that of the smallest
-/// integral of 1/(q + q_max/100) ds, with q the greatest thickness times the greatest speed of a cell (Dijkstra over
-/// eight neighbours): it follows the core of the flow.
+/// integral of 1/(q + q_max/100) ds, with q the greatest thickness times the greatest speed of a cell (Dijkstra
+/// over eight neighbours): it follows the core of the flow.
 pub(super) fn path(view: &View, terrain: &TerrainDomain) -> Option<PathLine> {
     let bed = &terrain.raster.values;
     let (thickness, speed) = (view.map("peak_thickness")?, view.map("peak_speed")?);
@@ -44,46 +45,68 @@ pub(super) fn path(view: &View, terrain: &TerrainDomain) -> Option<PathLine> {
         return None;
     }
     let price = |k: usize| 1.0 / (flow[k].max(0.0) + FLOOR * most);
-    let (mut cost, mut from) = (vec![f64::INFINITY; bed.len()], vec![usize::MAX; bed.len()]);
+    let cost = |a: usize, b: usize| apart(a, b) * 0.5 * (price(a) + price(b));
+    let cells = cheapest([top, far], [columns, y.len()], |cell| bed[cell].is_finite(), cost)?;
+    Some(PathLine::through(cells, x, y))
+}
+
+/// The cells from the first to the second of `ends` at the least sum of `cost`, by steps between the eight
+/// neighbours among the open cells of a raster of `columns` and `rows` (Dijkstra).
+fn cheapest(
+    [start, end]: [usize; 2],
+    [columns, rows]: [usize; 2],
+    is_open: impl Fn(usize) -> bool,
+    cost: impl Fn(usize, usize) -> f64,
+) -> Option<Vec<usize>> {
+    let (mut least, mut from) = (vec![f64::INFINITY; columns * rows], vec![usize::MAX; columns * rows]);
     // The bits of numbers that are not negative rise as the numbers do.
-    let mut open = BinaryHeap::from([Reverse((0_u64, top))]);
-    cost[top] = 0.0;
-    while let Some(Reverse((bits, k))) = open.pop() {
-        if k == far {
+    let mut queue = BinaryHeap::from([Reverse((0_u64, start))]);
+    least[start] = 0.0;
+    while let Some(Reverse((bits, k))) = queue.pop() {
+        if k == end {
             break;
         }
-        if f64::from_bits(bits) > cost[k] {
+        if f64::from_bits(bits) > least[k] {
             continue;
         }
         let (i, j) = (k % columns, k / columns);
-        for row in j.saturating_sub(1)..(j + 2).min(y.len()) {
+        for row in j.saturating_sub(1)..(j + 2).min(rows) {
             for column in i.saturating_sub(1)..(i + 2).min(columns) {
                 let next = row * columns + column;
-                let total = cost[k] + apart(k, next) * 0.5 * (price(k) + price(next));
-                if bed[next].is_finite() && total < cost[next] {
-                    cost[next] = total;
+                let total = least[k] + cost(k, next);
+                if is_open(next) && total < least[next] {
+                    least[next] = total;
                     from[next] = k;
-                    open.push(Reverse((total.to_bits(), next)));
+                    queue.push(Reverse((total.to_bits(), next)));
                 }
             }
         }
     }
-    let mut cells = vec![far];
-    while let Some(&k) = cells.last().filter(|&&k| k != top) {
+    let mut cells = vec![end];
+    while let Some(&k) = cells.last().filter(|&&k| k != start) {
         cells.push(*from.get(from[k]).map(|_| &from[k])?);
     }
     cells.reverse();
-    let smooth = |place: usize| {
-        let reach = SMOOTH.min(place).min(cells.len() - 1 - place);
-        let near = &cells[place - reach..=place + reach];
-        let mean = |at: &dyn Fn(usize) -> f64| near.iter().map(|&k| at(k)).sum::<f64>() / near.len() as f64;
-        [mean(&|k| x[k % columns]), mean(&|k| y[k / columns])]
-    };
-    let points: Vec<[f64; 2]> = (0..cells.len()).map(smooth).collect();
-    let mut distance = vec![0.0];
-    for pair in points.windows(2) {
-        let step = (pair[1][0] - pair[0][0]).hypot(pair[1][1] - pair[0][1]);
-        distance.push(distance[distance.len() - 1] + step);
+    Some(cells)
+}
+
+impl PathLine {
+    /// The line through these cells, straightened.
+    fn through(cells: Vec<usize>, x: &[f64], y: &[f64]) -> PathLine {
+        let columns = x.len();
+        let smooth = |place: usize| {
+            let reach = SMOOTH.min(place).min(cells.len() - 1 - place);
+            let near = &cells[place - reach..=place + reach];
+            let mean =
+                |at: &dyn Fn(usize) -> f64| near.iter().map(|&k| at(k)).sum::<f64>() / near.len() as f64;
+            [mean(&|k| x[k % columns]), mean(&|k| y[k / columns])]
+        };
+        let points: Vec<[f64; 2]> = (0..cells.len()).map(smooth).collect();
+        let mut distance = vec![0.0];
+        for pair in points.windows(2) {
+            let step = (pair[1][0] - pair[0][0]).hypot(pair[1][1] - pair[0][1]);
+            distance.push(distance[distance.len() - 1] + step);
+        }
+        PathLine { cells, points, distance }
     }
-    Some(PathLine { cells, points, distance })
 }

@@ -10,46 +10,54 @@ use super::{maps, terrain::TerrainDomain};
 #[cfg(feature = "geo")]
 use crate::{raster::Raster, release::Sparse};
 
-pub(super) static PICTURES: Pictures =
-    Pictures { needed: &["time", "x", "thickness"], domain, shown, figures, film: &["thickness"], scene };
+#[derive(Debug)]
+pub(super) struct Avalanche;
 
-/// Those of a mountain show maps alone.
-fn shown(domain: &dyn Domain, dimensions: usize) -> &'static [&'static str] {
-    match (domain.get::<ChuteDomain>(), dimensions) {
-        (None, _) => &[],
-        (Some(_), 1) => &["thickness", "velocity_x"],
-        (Some(_), _) => &["thickness"],
+impl Pictures for Avalanche {
+    fn needed(&self) -> &'static [&'static str] {
+        &["time", "x", "thickness"]
     }
-}
 
-fn figures<'a>(view: &'a View<'a>, domain: &'a dyn Domain) -> Vec<Drawing<'a>> {
-    #[cfg(feature = "geo")]
-    if let Some(terrain) = domain.get::<TerrainDomain>() {
-        return maps::figures(view, terrain);
+    /// A chute, or the mountain where the file has a bed.
+    fn domain(&self, file: &ResultFile, centres: [&[f64]; 2]) -> Result<Arc<dyn Domain>, String> {
+        if file.has("bed") { terrain(file, centres) } else { Ok(Arc::new(ChuteDomain)) }
     }
-    let _ = domain;
-    if view.dimensions() == 1 { chute::line(view) } else { chute::plane(view) }
-}
 
-fn scene<'a>(
-    view: &'a View<'a>,
-    domain: &'a dyn Domain,
-    instants: &mut Instants<'_>,
-) -> Result<Box<dyn Scene + 'a>, output::Error> {
-    #[cfg(feature = "geo")]
-    if let Some(terrain) = domain.get::<TerrainDomain>() {
-        return maps::scene(view, terrain, instants);
+    /// Those of a mountain show maps alone.
+    fn shown(&self, domain: &dyn Domain, dimensions: usize) -> &'static [&'static str] {
+        match (domain.get::<ChuteDomain>(), dimensions) {
+            (None, _) => &[],
+            (Some(_), 1) => &["thickness", "velocity_x"],
+            (Some(_), _) => &["thickness"],
+        }
     }
-    let _ = (domain, instants);
-    Ok(chute::scene(view))
-}
 
-/// A chute, or the mountain where the file has a bed.
-fn domain(file: &ResultFile, centres: [&[f64]; 2]) -> Result<Arc<dyn Domain>, String> {
-    if !file.has("bed") {
-        return Ok(Arc::new(ChuteDomain));
+    fn figures<'a>(&self, view: &'a View<'a>, domain: &'a dyn Domain) -> Vec<Drawing<'a>> {
+        #[cfg(feature = "geo")]
+        if let Some(terrain) = domain.get::<TerrainDomain>() {
+            return maps::figures(view, terrain);
+        }
+        let _ = domain;
+        if view.dimensions() == 1 { chute::line(view) } else { chute::plane(view) }
     }
-    terrain(file, centres)
+
+    fn film(&self) -> &'static [&'static str] {
+        &["thickness"]
+    }
+
+    fn scene<'a>(
+        &self,
+        view: &'a View<'a>,
+        domain: &'a dyn Domain,
+        instants: &mut Instants<'_>,
+    ) -> Result<Box<dyn Scene + 'a>, output::Error> {
+        #[cfg(feature = "geo")]
+        if let Some(terrain) = domain.get::<TerrainDomain>() {
+            return maps::scene(view, terrain, instants);
+        }
+        let _ = (domain, instants);
+        Ok(chute::scene(view))
+    }
 }
 
 #[cfg(not(feature = "geo"))]

@@ -102,8 +102,8 @@ impl TerrainDomain {
         if largest > 0.0 { REACHED.min(0.5 * largest) } else { REACHED }
     }
 
-    /// Horizontal length, and drop, from the highest released cell to the farthest that the mass reached with a peak
-    /// pressure of [`REACHED_PRESSURE`].
+    /// Horizontal length, and drop, from the highest released cell to the farthest that the mass reached with a
+    /// peak pressure of [`REACHED_PRESSURE`].
     fn runout(&self, [x, y]: [&[f64]; 2], pressure: &[f64]) -> Option<(f64, f64)> {
         let bed = &self.raster.values;
         let columns = x.len();
