@@ -1,4 +1,4 @@
-//! The kinds of cases: a model with what it is computed on. Each has a folder and a line in [`kinds!`].
+//! The kinds of cases: a model with what it is computed on. Each has a folder, declared here, and a line in `kinds!`.
 
 use std::fmt::Debug;
 use std::sync::Arc;

@@ -53,7 +53,7 @@ pub use fault::{CaseError, CaseErrorKind, nearest};
 pub use files::{Files, NoFiles, Outline};
 pub use formula::{Formula, FormulaError};
 pub use grid::{Axis, Grid, Points};
-pub use kinds::{Kind, avalanche, chute, json_schema, sandpile, terrain};
+pub use kinds::*;
 pub use output::FileKind;
 pub use precision::Precision;
 

@@ -6,6 +6,7 @@ use super::files::{self, Files};
 use super::grid::Points;
 use super::quantity::Quantity;
 use super::source::Source;
+use granflow_model::scheme::Scheme;
 use std::path::{Path, PathBuf};
 
 /// The text of a case and the files it may name.
@@ -22,8 +23,15 @@ pub(crate) struct StepLimits {
     pub scheme: &'static str,
     /// Largest Courant number.
     pub max_courant: f64,
-    /// Courant number where the case does not say, as a share of the largest.
-    pub share: f64,
+    /// Courant number where the case does not say.
+    pub suggested: f64,
+}
+
+impl StepLimits {
+    /// The limits that the scheme of this name states itself.
+    pub fn of<S: Scheme<1, f64>>(name: &'static str, scheme: &S) -> Self {
+        Self { scheme: name, max_courant: scheme.max_courant(), suggested: scheme.suggested_courant() }
+    }
 }
 
 impl Look<'_> {
@@ -91,7 +99,7 @@ impl Look<'_> {
         courant: Option<f64>,
         limits: StepLimits,
     ) -> Result<Stepping, CaseError> {
-        let StepLimits { scheme, max_courant, share } = limits;
+        let StepLimits { scheme, max_courant, suggested } = limits;
         self.positive("scheme.step", step)?;
         match (step, courant) {
             (Some(_), Some(_)) => Err(self.fault(
@@ -105,7 +113,7 @@ impl Look<'_> {
                 self.number("scheme.courant", courant, |v| v > 0.0 && v <= max_courant, &allowed)?;
                 Ok(Stepping::Courant(courant))
             }
-            (None, None) => Ok(Stepping::Courant(share * max_courant)),
+            (None, None) => Ok(Stepping::Courant(suggested)),
         }
     }
 

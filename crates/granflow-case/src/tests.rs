@@ -82,6 +82,14 @@ fn the_silo() {
 }
 
 #[test]
+fn a_scheme_says_its_own_courant_numbers() {
+    for (name, max, taken) in [("balanced", 1.0, 0.9), ("balanced_2", 0.5, 0.45), ("verfahren_2", 1.0, 0.9)] {
+        let run = checked(&with(&[&format!("scheme={{name=\"{name}\"}}")]).unwrap()).run;
+        assert_eq!((run.max_courant, run.stepping), (max, Stepping::Courant(taken)), "{name}");
+    }
+}
+
+#[test]
 fn the_numbers_of_a_law() {
     let law = |law: &str| {
         let friction = format!("material.friction={{{law}}}");

@@ -1,5 +1,11 @@
 //! `[scheme]` of an avalanche: which method, which time step, which films.
 
+use granflow_model::savage_hutter::balanced::Balanced;
+use granflow_model::savage_hutter::friction::Coulomb;
+use granflow_model::savage_hutter::ground::Chute;
+use granflow_model::savage_hutter::kinetic::{
+    VERFAHREN_1, VERFAHREN_2, VERFAHREN_3, VERFAHREN_4, VERFAHREN_5, Variant,
+};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -88,10 +94,22 @@ impl SchemeName {
 
     /// What a case may say about the step.
     pub(crate) fn limits(self) -> StepLimits {
-        let max_courant = if self == Self::Balanced2 { 0.5 } else { 1.0 };
-        StepLimits { scheme: self.as_str(), max_courant, share: 0.9 }
+        let (name, friction) = (self.as_str(), Coulomb { mu: 0.0 });
+        let published = |variant: Variant| StepLimits::of(name, &variant.with(friction));
+        match self {
+            Self::Balanced => StepLimits::of(name, &OnChute::first(friction, 0.0)),
+            Self::Balanced2 => StepLimits::of(name, &OnChute::second(friction, 0.0)),
+            Self::Verfahren1 => published(VERFAHREN_1),
+            Self::Verfahren2 => published(VERFAHREN_2),
+            Self::Verfahren3 => published(VERFAHREN_3),
+            Self::Verfahren4 => published(VERFAHREN_4),
+            Self::Verfahren5 => published(VERFAHREN_5),
+        }
     }
 }
+
+/// The balanced scheme, whose limits depend on nothing but its order.
+type OnChute = Balanced<Coulomb, Chute<1, f64>>;
 
 impl Scheme {
     /// How the time step is chosen.

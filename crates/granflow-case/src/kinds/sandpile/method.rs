@@ -1,5 +1,6 @@
 //! `[scheme]` and `[time]` of a sandpile: which method, which time step, when the run ends.
 
+use granflow_model::hadeler_kuttler::scheme::{FIRST_ORDER, HadelerKuttler, SECOND_ORDER, Slopes};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -55,10 +56,14 @@ impl SchemeName {
         }
     }
 
-    /// What a case may say about the step; the default is 0.45 of the largest Courant number, as in the paper.
+    /// What a case may say about the step.
     pub(super) fn limits(self) -> StepLimits {
-        let max_courant = if self == Self::FirstOrder { 1.0 } else { 0.5 };
-        StepLimits { scheme: self.as_str(), max_courant, share: 0.45 }
+        let scheme = match self {
+            Self::FirstOrder => FIRST_ORDER,
+            Self::SecondOrder => SECOND_ORDER,
+            Self::Adaptive => HadelerKuttler { slopes: Slopes::Adaptive { exponent: 2.0 } },
+        };
+        StepLimits::of(self.as_str(), &scheme)
     }
 }
 
