@@ -132,7 +132,7 @@ fn act(command: Command) -> Result<(), Failure> {
             let case = read(&case, &set)?;
             run::run(case, &run::RunOptions { out, threads, resume, quiet })
         }
-        Command::Check { case, set } => check::check(read(&case, &set)?),
+        Command::Check { case, set } => check::check(&Case::read_with(&case, &set)?),
         Command::New { list: true, .. } => new::list(),
         Command::New { kind: None, .. } => {
             Err(Failure::usage("which kind of case?", "granflow new --list shows the kinds"))
