@@ -1,5 +1,7 @@
 //! The map: shaded mountain, contour lines, a field laid over it, outlines, scale bar.
 
+use tiny_skia::Pixmap;
+
 use super::axes::{
     Axis, Caption, Panel, RIM, Scale, bottom_room, extent, heading, heading_height, left_room,
 };
@@ -108,68 +110,59 @@ fn colour_range(overlay: &Overlay) -> [f64; 2] {
     }
 }
 
-impl Figure for Map<'_> {
-    fn draw(&self) -> Result<Picture, FigureError> {
-        self.check()?;
-        let e = self.extent;
-        let view = self.view();
-        let scale = |range| Scale { coordinates: true, ..Scale::new(range) };
-        let (x, y) = (scale(view.x), scale(view.y));
-        let (wide, high) = paper(view);
-        let overlay = self.overlay.map(|overlay| (overlay, colour_range(&overlay)));
-        let bar =
-            overlay.map(|(o, range)| ColourBar { colours: o.colours, range, caption: o.quantity.caption() });
-        let room = bar.as_ref().map_or(10.0, |bar| 16.0 + bar.room(high));
-        let head = heading_height(self.title, self.subtitle);
-        let (easting, northing) = (Caption::new("easting", "m"), Caption::new("northing", "m"));
-        let left = RIM + left_room(&y.upright_ticks(high), &northing);
-        let (width, height) = (left + wide + room + RIM, head + high + bottom_room(&easting) + RIM);
+/// An overlay as it is drawn: no holes, and the range of its colours.
+struct Laid<'a> {
+    overlay: Overlay<'a>,
+    values: Vec<f64>,
+    nx: usize,
+    range: [f64; 2],
+}
 
-        let mut canvas = Canvas::new(width, height);
-        heading(&mut canvas, self.title, self.subtitle, width);
-        let area = Area { left, top: head, width: wide, height: high };
-        let panel = Panel::within(area, x, y, easting, northing);
+impl<'a> Laid<'a> {
+    fn new(overlay: Overlay<'a>, nx: usize) -> Self {
+        let values = overlay.values.iter().map(|&v| if v.is_finite() { v } else { 0.0 }).collect();
+        Self { range: colour_range(&overlay), overlay, values, nx }
+    }
 
-        let (columns, rows) = panel.area.pixels();
-        let own;
-        let relief = match self.relief {
-            Some(relief) if relief.shows(view, (columns, rows)) => relief,
-            _ => {
-                own = Relief::of(self, view, (columns, rows));
-                &own
-            }
-        };
-        let Relief { across, up, elevation, light, contours, ink, .. } = relief;
-        let table = overlay.map(|(o, _)| o.colours.table());
-        let zeroed: Vec<f64> = overlay.map_or(Vec::new(), |(o, _)| {
-            o.values.iter().map(|&v| if v.is_finite() { v } else { 0.0 }).collect()
-        });
-        let field =
-            |column: usize, row: usize| Lattice { values: &zeroed, nx: e.nx }.at(across[column], up[row]);
+    fn bar(&self) -> ColourBar {
+        let Overlay { colours, quantity, .. } = &self.overlay;
+        ColourBar { colours: *colours, range: self.range, caption: quantity.caption() }
+    }
 
-        let image = paint((columns, rows), |column, row| {
-            let pixel = row * columns + column;
-            if !elevation[pixel].is_finite() {
-                return None;
-            }
-            let light = if light[pixel].is_finite() { light[pixel] } else { 0.7 };
-            let mut colour = ground(light);
-            if let (Some((o, range)), Some(table)) = (overlay, &table) {
-                let value = field(column, row);
-                if value > o.threshold {
-                    colour =
-                        mix(colour, shade(pick(table, value, range), (0.80 + 0.34 * light).min(1.06)), 0.88);
-                }
-            }
-            Some(ink.get(pixel).map_or(colour, |&ink| Contours::over_colour(colour, ink)))
-        });
-        if let Some(image) = image {
-            canvas.image(&image, [panel.area.left, panel.area.top]);
+    /// The field at a pixel, where it is above the threshold.
+    fn at(&self, relief: &Relief, column: usize, row: usize) -> Option<f64> {
+        let lattice = Lattice { values: &self.values, nx: self.nx };
+        Some(lattice.at(relief.across[column], relief.up[row])).filter(|&v| v > self.overlay.threshold)
+    }
+}
+
+/// The panel's pixels: the mountain with the field over it.
+fn image(relief: &Relief, laid: Option<&Laid>, (columns, rows): (usize, usize)) -> Option<Pixmap> {
+    let Relief { elevation, light, ink, .. } = relief;
+    let table = laid.map(|laid| laid.overlay.colours.table());
+    paint((columns, rows), |column, row| {
+        let pixel = row * columns + column;
+        if !elevation[pixel].is_finite() {
+            return None;
         }
+        let light = if light[pixel].is_finite() { light[pixel] } else { 0.7 };
+        let mut colour = ground(light);
+        if let (Some(laid), Some(table)) = (laid, &table)
+            && let Some(value) = laid.at(relief, column, row)
+        {
+            let over = shade(pick(table, value, laid.range), (0.80 + 0.34 * light).min(1.06));
+            colour = mix(colour, over, 0.88);
+        }
+        Some(ink.get(pixel).map_or(colour, |&ink| Contours::over_colour(colour, ink)))
+    })
+}
 
-        canvas.clip(Some(panel.area));
+impl Map<'_> {
+    /// What lies over the image: names of contour lines, outlines, scale bar and legend, where they hide least.
+    fn draw_over(&self, canvas: &mut Canvas, panel: &Panel, relief: &Relief, laid: Option<&Laid>) {
+        let (columns, rows) = panel.area.pixels();
         let covered =
-            |column: usize, row: usize| overlay.is_some_and(|(o, _)| field(column, row) > o.threshold);
+            |column: usize, row: usize| laid.is_some_and(|laid| laid.at(relief, column, row).is_some());
         let (mut taken, mut lines) = (Vec::new(), Vec::new());
         for row in (0..rows).step_by(12) {
             let inside = (0..columns).step_by(12).filter(|&column| covered(column, row));
@@ -182,22 +175,58 @@ impl Figure for Map<'_> {
             legend.add(outline.name, Key::Line(outline.pen()));
         }
         taken.extend(&lines);
-        let ruler = ScaleBar::fit(&panel, &taken);
+        let ruler = ScaleBar::fit(panel, &taken);
         along(&ruler.area.corners(), panel.area, &mut taken);
         let (place, _) = legend.best_place(panel.area, &taken);
         let boxes = if legend.is_empty() { vec![ruler.area] } else { vec![ruler.area, place] };
-        if let Some(contours) = contours {
+        if let Some(contours) = relief.contours {
             let free = |column: usize, row: usize| {
                 let p = panel.area.at_pixel(column, row);
                 let beside = |q: &[f64; 2]| (p[0] - q[0]).powi(2) + (p[1] - q[1]).powi(2) < 12.0 * 12.0;
                 !covered(column, row) && !boxes.iter().any(|b| b.contains(p)) && !lines.iter().any(beside)
             };
-            let elevations = Elevations { elevation, columns, rows };
-            elevations.label(&mut canvas, &panel, *contours, free);
+            let elevations = Elevations { elevation: &relief.elevation, columns, rows };
+            elevations.label(canvas, panel, contours, free);
         }
-        self.outlines.iter().for_each(|outline| outline.draw(&mut canvas, &panel));
-        ruler.draw(&mut canvas);
-        legend.draw(&mut canvas, place);
+        self.outlines.iter().for_each(|outline| outline.draw(canvas, panel));
+        ruler.draw(canvas);
+        legend.draw(canvas, place);
+    }
+}
+
+impl Figure for Map<'_> {
+    fn draw(&self) -> Result<Picture, FigureError> {
+        self.check()?;
+        let view = self.view();
+        let scale = |range| Scale { coordinates: true, ..Scale::new(range) };
+        let (x, y) = (scale(view.x), scale(view.y));
+        let (wide, high) = paper(view);
+        let laid = self.overlay.map(|overlay| Laid::new(overlay, self.extent.nx));
+        let bar = laid.as_ref().map(Laid::bar);
+        let room = bar.as_ref().map_or(10.0, |bar| 16.0 + bar.room(high));
+        let head = heading_height(self.title, self.subtitle);
+        let (easting, northing) = (Caption::new("easting", "m"), Caption::new("northing", "m"));
+        let left = RIM + left_room(&y.upright_ticks(high), &northing);
+        let (width, height) = (left + wide + room + RIM, head + high + bottom_room(&easting) + RIM);
+
+        let mut canvas = Canvas::new(width, height);
+        heading(&mut canvas, self.title, self.subtitle, width);
+        let area = Area { left, top: head, width: wide, height: high };
+        let panel = Panel::within(area, x, y, easting, northing);
+        let pixels = panel.area.pixels();
+        let own;
+        let relief = match self.relief {
+            Some(relief) if relief.shows(view, pixels) => relief,
+            _ => {
+                own = Relief::of(self, view, pixels);
+                &own
+            }
+        };
+        if let Some(image) = image(relief, laid.as_ref(), pixels) {
+            canvas.image(&image, [panel.area.left, panel.area.top]);
+        }
+        canvas.clip(Some(panel.area));
+        self.draw_over(&mut canvas, &panel, relief, laid.as_ref());
         canvas.clip(None);
         panel.draw_frame(&mut canvas);
         if let Some(bar) = bar {

@@ -47,19 +47,32 @@ impl Section<'_> {
     }
 }
 
-impl Figure for Section<'_> {
-    fn draw(&self) -> Result<Picture, FigureError> {
-        let n = self.distance.len();
+/// The layers of a section as drawn: heights, and names that say how much too thick they are.
+struct Layers {
+    surface: Vec<f64>,
+    envelope: Vec<f64>,
+    ground: &'static str,
+    resting: String,
+    passing: String,
+}
+
+impl Section<'_> {
+    fn check(&self) -> Result<(), FigureError> {
         let parts = [
             ("bed", self.bed),
             ("deposit", self.deposit),
             ("peak thickness", self.peak_thickness),
             ("peak speed", self.peak_speed),
         ];
-        for (what, values) in parts {
+        parts.into_iter().try_for_each(|(what, values)| {
             let optional = values.is_empty() && what.starts_with("peak");
-            FigureError::same_length(self.title, what, values.len(), if optional { 0 } else { n })?;
-        }
+            let expected = if optional { 0 } else { self.distance.len() };
+            FigureError::same_length(self.title, what, values.len(), expected)
+        })
+    }
+
+    fn layers(&self) -> Layers {
+        let n = self.distance.len();
         let factor = self.factor();
         let raised = |layer: &[f64]| -> Vec<f64> {
             let height = |(bed, h): (&f64, &f64)| bed + factor * if h.is_finite() { h.max(0.0) } else { 0.0 };
@@ -77,28 +90,66 @@ impl Figure for Section<'_> {
         let named = |layer: &str, thick: &str| {
             if times.is_empty() { layer.into() } else { format!("{layer} ({thick}{times})") }
         };
-        let (resting, passing): (String, String) =
-            (named("deposit", "thickness "), named("greatest thickness", ""));
+        let (resting, passing) = (named("deposit", "thickness "), named("greatest thickness", ""));
+        Layers { surface, envelope, ground, resting, passing }
+    }
+
+    /// The scales of distance and elevation.
+    fn scales(&self, layers: &Layers) -> Result<[Scale; 2], FigureError> {
+        let none = |what: &str| FigureError::empty(self.title, format!("no finite {what}"));
+        let along = extent(self.distance.iter().copied());
+        let along = Axis::default().range_of(along, 0.0).ok_or_else(|| none("distance"))?;
+        let heights = extent(self.bed.iter().chain(&layers.surface).chain(&layers.envelope).copied());
+        let heights = Axis::default().range_of(heights, 0.05);
+        Ok([Scale::new(along), Scale::new(heights.ok_or_else(|| none("elevation of the ground"))?)])
+    }
+
+    /// The scale of the speed, if it is drawn.
+    fn speeds(&self) -> Option<Scale> {
+        let [_, high] = extent(self.peak_speed.iter().copied())?;
+        Some(Scale::new([0.0, if high > 0.0 { 1.08 * high } else { 1.0 }]))
+    }
+
+    fn draw_speed(&self, canvas: &mut Canvas, panel: &Panel) {
+        let (x, y) = (self.distance, self.peak_speed);
+        panel.draw_grid(canvas);
+        let speed = Curve { name: "", x, y, style: Style::Solid, colour: Some(FLOW) };
+        draw_all(
+            canvas,
+            panel,
+            &[speed],
+            &[Fill { name: "", x, lower: None, upper: y, colour: [240, 190, 150] }],
+        );
+        panel.draw_frame(canvas);
+    }
+
+    fn draw_layers(&self, canvas: &mut Canvas, panel: &Panel, layers: &Layers) {
+        let Layers { surface, envelope, ground, resting, passing } = layers;
         let x = self.distance;
         let curves = [
             Curve { name: ground, x, y: self.bed, style: Style::Solid, colour: Some([70, 62, 54]) },
-            Curve { name: &passing, x, y: &envelope, style: Style::Dashed, colour: Some(FLOW) },
+            Curve { name: passing, x, y: envelope, style: Style::Dashed, colour: Some(FLOW) },
         ];
         let curves = &curves[..if envelope.is_empty() { 1 } else { 2 }];
         let fills = [
             Fill { name: "", x, lower: None, upper: self.bed, colour: GROUND },
-            Fill { name: &resting, x, lower: Some(self.bed), upper: &surface, colour: DEPOSIT },
+            Fill { name: resting, x, lower: Some(self.bed), upper: surface, colour: DEPOSIT },
         ];
-        let none = |what: &str| FigureError::empty(self.title, format!("no finite {what}"));
-        let along =
-            Axis::default().range_of(extent(x.iter().copied()), 0.0).ok_or_else(|| none("distance"))?;
-        let heights = extent(self.bed.iter().chain(&surface).chain(&envelope).copied());
-        let heights =
-            Axis::default().range_of(heights, 0.05).ok_or_else(|| none("elevation of the ground"))?;
-        let (distance, elevation) = (Scale::new(along), Scale::new(heights));
-        let speeds = extent(self.peak_speed.iter().copied())
-            .map(|[_, high]| [0.0, if high > 0.0 { 1.08 * high } else { 1.0 }]);
+        panel.draw_grid(canvas);
+        draw_all(canvas, panel, curves, &fills);
+        panel.draw_frame(canvas);
+        let legend = legend(curves, &fills);
+        let (place, _) = legend.best_place(panel.area, &taken(panel, curves, &fills));
+        legend.draw(canvas, place);
+    }
+}
 
+impl Figure for Section<'_> {
+    fn draw(&self) -> Result<Picture, FigureError> {
+        self.check()?;
+        let layers = self.layers();
+        let [distance, elevation] = self.scales(&layers)?;
+        let speeds = self.speeds();
         let (width, upper, lower, gap) = (840.0, 330.0, 130.0, 14.0);
         let caption = Caption::new("distance along the path", "m");
         let (heights_of, speeds_of) = (Caption::new("elevation", "m"), Caption::new("greatest speed", "m/s"));
@@ -108,39 +159,21 @@ impl Figure for Section<'_> {
         heading(&mut canvas, self.title, self.subtitle, width);
         let mut left = left_room(&elevation.upright_ticks(upper), &heights_of);
         if let Some(speeds) = speeds {
-            left = left.max(left_room(&Scale::new(speeds).upright_ticks(lower), &speeds_of));
+            left = left.max(left_room(&speeds.upright_ticks(lower), &speeds_of));
         }
         let area =
             Area { left: left + RIM, top: head, width: width - left - 2.0 * RIM - 10.0, height: upper };
         let panel = |area, y, x_caption: Caption, y_caption: Caption| {
             Panel::within(area, distance, y, x_caption, y_caption).with_caption_at(RIM + CAPTION_SIZE)
         };
-        let mut top = panel(
-            area,
-            elevation,
-            if speeds.is_some() { Caption::default() } else { caption.clone() },
-            heights_of,
-        );
+        let under = if speeds.is_some() { Caption::default() } else { caption.clone() };
+        let mut top = panel(area, elevation, under, heights_of);
         if let Some(speeds) = speeds {
             top = top.without_x_labels();
             let area = Area { top: head + upper + gap, height: lower, ..area };
-            let bottom = panel(area, Scale::new(speeds), caption, speeds_of);
-            bottom.draw_grid(&mut canvas);
-            let speed = Curve { name: "", x, y: self.peak_speed, style: Style::Solid, colour: Some(FLOW) };
-            draw_all(
-                &mut canvas,
-                &bottom,
-                &[speed],
-                &[Fill { name: "", x, lower: None, upper: self.peak_speed, colour: [240, 190, 150] }],
-            );
-            bottom.draw_frame(&mut canvas);
+            self.draw_speed(&mut canvas, &panel(area, speeds, caption, speeds_of));
         }
-        top.draw_grid(&mut canvas);
-        draw_all(&mut canvas, &top, curves, &fills);
-        top.draw_frame(&mut canvas);
-        let legend = legend(curves, &fills);
-        let (place, _) = legend.best_place(top.area, &taken(&top, curves, &fills));
-        legend.draw(&mut canvas, place);
+        self.draw_layers(&mut canvas, &top, &layers);
         Ok(canvas.finish())
     }
 }
