@@ -176,7 +176,7 @@ pub trait Pictures: fmt::Debug + Sync {
     fn figures<'a>(&self, view: &'a View<'a>, domain: &'a dyn Domain) -> Vec<Drawing<'a>>;
 
     /// The series that the animation shows.
-    fn film(&self) -> &'static [&'static str];
+    fn animated(&self) -> &'static [&'static str];
 
     /// What all pictures of the animation share, found from the instants that it shows.
     ///
@@ -190,14 +190,14 @@ pub trait Pictures: fmt::Debug + Sync {
     ) -> Result<Box<dyn Scene + 'a>, crate::output::Error>;
 }
 
-/// The series of [`Pictures::film`] at one instant after the other, read as they are asked for.
+/// The series of [`Pictures::animated`] at one instant after the other, read as they are asked for.
 #[cfg(feature = "figures")]
 pub type Instants<'i> = dyn Iterator<Item = Result<Vec<Vec<f64>>, crate::output::Error>> + 'i;
 
 /// An animation that is still to be drawn.
 #[cfg(feature = "figures")]
 pub trait Scene: Sync {
-    /// The picture of an instant, from the series of [`Pictures::film`]; all have the same size.
+    /// The picture of an instant, from the series of [`Pictures::animated`]; all have the same size.
     ///
     /// # Errors
     /// [`FigureError`] if it cannot be drawn.

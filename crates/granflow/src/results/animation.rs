@@ -36,7 +36,7 @@ pub(super) fn write(run: &Finished, story: &Story) -> Result<PathBuf, FilesError
     let path = run.directory.join("animation.png");
     let Some(pictures) = story.domain.model().pictures else { return Ok(path) };
     let frames = run.frames.again()?;
-    let fields = pictures.film().iter().filter_map(|name| frames.position(name)).collect();
+    let fields = pictures.animated().iter().filter_map(|name| frames.position(name)).collect();
     let count = frames.times().len();
     let every = count.div_ceil(PICTURES).max(1);
     let shown: Vec<usize> = (0..count).filter(|k| k % every == 0 || k + 1 == count).collect();

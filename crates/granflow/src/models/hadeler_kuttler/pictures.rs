@@ -44,7 +44,7 @@ impl Pictures for Sandpile {
         if view.dimensions() == 1 { figures::line(view, table) } else { figures::plane(view, table) }
     }
 
-    fn film(&self) -> &'static [&'static str] {
+    fn animated(&self) -> &'static [&'static str] {
         LAYERS
     }
 

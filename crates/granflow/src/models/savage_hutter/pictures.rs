@@ -41,7 +41,7 @@ impl Pictures for Avalanche {
         if view.dimensions() == 1 { chute::line(view) } else { chute::plane(view) }
     }
 
-    fn film(&self) -> &'static [&'static str] {
+    fn animated(&self) -> &'static [&'static str] {
         &["thickness"]
     }
 
