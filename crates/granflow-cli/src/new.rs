@@ -22,16 +22,12 @@ pub struct Template {
 
 macro_rules! template {
     ($kind:literal, $about:literal) => {
-        Template {
-            kind: $kind,
-            about: $about,
-            text: include_str!(concat!("../../../cases/", $kind, ".toml")),
-        }
+        Template { kind: $kind, about: $about, text: include_str!(concat!("../cases/", $kind, ".toml")) }
     };
 }
 
 /// The commented case of an avalanche on the built-in mountain.
-pub const AVALANCHE: &str = include_str!("../../../cases/avalanche.toml");
+pub const AVALANCHE: &str = include_str!("../cases/avalanche.toml");
 
 /// The cases to start from.
 pub const TEMPLATES: &[Template] = &[

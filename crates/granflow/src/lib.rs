@@ -91,5 +91,5 @@ pub use model::Words;
 
 /// The README's library example is a test.
 #[cfg(doctest)]
-#[doc = include_str!("../../../README.md")]
+#[doc = include_str!("../README.md")]
 struct Readme;

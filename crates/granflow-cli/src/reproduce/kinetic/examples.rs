@@ -40,7 +40,7 @@ pub struct Example {
 
 macro_rules! case {
     ($name:literal) => {
-        include_str!(concat!("../../../../../cases/", $name, ".toml"))
+        include_str!(concat!("../../../cases/", $name, ".toml"))
     };
 }
 
