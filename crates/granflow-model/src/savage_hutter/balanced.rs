@@ -279,7 +279,7 @@ impl<F: Friction, B: Copy, const LIMITED: bool> Balanced<F, B, LIMITED> {
     where
         B: Bed<D, R>,
     {
-        let Cell { state, ground } = &near.here;
+        let Cell { state, ground, .. } = &near.here;
         let dx = near.spacing.size[axis];
         let (a, b) = (&near.lo[axis], &near.hi[axis]);
         let bed_jump = [
@@ -437,7 +437,7 @@ impl<F: Friction, B: Copy, const LIMITED: bool> Balanced<F, B, LIMITED> {
             near.lo[axis].ground = near.lo[axis].ground.exact();
             near.hi[axis].ground = near.hi[axis].ground.exact();
         });
-        let Cell { state, ground } = &near.here;
+        let Cell { state, ground, .. } = &near.here;
         let zero = R::zero();
         let (mut lo, mut hi, mut drop) = ([zero; D], [zero; D], [zero; D]);
         for_axis!(axis in D => {
@@ -459,6 +459,7 @@ where
 {
     type State = Flow<D, R>;
     type Ground = B;
+    type Forcing = ();
     type Primitives = [Density<R>; D];
     type FaceStates = EdgesOf<D, R, B, LIMITED>;
     type Flux = Flux<D, R>;
@@ -483,7 +484,7 @@ where
     }
 
     #[inline(always)]
-    fn primitives(&self, Cell { state, ground }: &Cell<Flow<D, R>, B>) -> [Density<R>; D] {
+    fn primitives(&self, Cell { state, ground, .. }: &Cell<Flow<D, R>, B>) -> [Density<R>; D] {
         if LIMITED && self.slopes {
             // The halves are those of the cell's ends; here only the velocity is needed.
             let u = state.velocity();
@@ -499,7 +500,7 @@ where
         prime: &[Density<R>; D],
     ) -> Self::FaceStates {
         let near = stencil.star();
-        let Cell { state, ground } = near.here;
+        let Cell { state, ground, .. } = near.here;
         let per = near.spacing.inv;
         let u: [R; D] = per_axis!(axis => prime[axis].u);
         let dry = self.is_dry(state.h, &ground);
@@ -595,7 +596,7 @@ where
         _corners: &[[(); 2]; 2],
         dt: R,
     ) -> Flow<D, R> {
-        let Cell { state, ground } = stencil.at([0; D]);
+        let Cell { state, ground, .. } = stencil.at([0; D]);
         let (bed, spacing) = (ground.exact(), stencil.spacing());
         let (zero, per) = (R::zero(), spacing.inv);
         let Flow { h, q } = state;

@@ -111,7 +111,7 @@ impl Kinetic {
     #[inline(always)]
     fn edges<const D: usize, R: Real>(
         depth: FaceDepth,
-        Cell { state, ground }: &Cell<Flow<D, R>, Chute<D, R>>,
+        Cell { state, ground, .. }: &Cell<Flow<D, R>, Chute<D, R>>,
         prime: &[Density<R>; D],
     ) -> FaceStates<D, R> {
         let own = depth == FaceDepth::Own;
@@ -166,7 +166,7 @@ impl Kinetic {
     /// beta D h - tilt per axis: the pull that friction must hold, as an acceleration.
     #[inline(always)]
     fn excess<const D: usize, R: Real>(near: &Neighbours<D, R, Flow<D, R>, Chute<D, R>>) -> [R; D] {
-        let Cell { state, ground } = near.here;
+        let Cell { state, ground, .. } = near.here;
         let (size, lo, hi) = (near.spacing.size, &near.lo, &near.hi);
         let rise_lo: [R; D] = per_axis!(k => ground.potential_jump(k, Towards::Lo, &lo[k].ground, state.h, lo[k].state.h, size[k]));
         let rise_hi: [R; D] = per_axis!(k => ground.potential_jump(k, Towards::Hi, &hi[k].ground, state.h, hi[k].state.h, size[k]));
@@ -192,6 +192,7 @@ fn divergence<const D: usize, R: Real>(faces: &[Faces<Flow<D, R>>; D], lambda: [
 impl<const D: usize, R: Real> Scheme<D, R> for Kinetic {
     type State = Flow<D, R>;
     type Ground = Chute<D, R>;
+    type Forcing = ();
     type Primitives = [Density<R>; D];
     type FaceStates = FaceStates<D, R>;
     /// Mass and momentum, with the face depth of a moving cell.
@@ -212,7 +213,7 @@ impl<const D: usize, R: Real> Scheme<D, R> for Kinetic {
     }
 
     #[inline(always)]
-    fn primitives(&self, Cell { state, ground }: &Cell<Flow<D, R>, Chute<D, R>>) -> [Density<R>; D] {
+    fn primitives(&self, Cell { state, ground, .. }: &Cell<Flow<D, R>, Chute<D, R>>) -> [Density<R>; D] {
         per_axis!(axis => Density::new(state.h, state.q[axis], ground.beta))
     }
 
@@ -242,7 +243,7 @@ impl<const D: usize, R: Real> Scheme<D, R> for Kinetic {
         dt: R,
     ) -> Flow<D, R> {
         let near = stencil.star();
-        let Cell { state: Flow { h, q }, ground } = near.here;
+        let Cell { state: Flow { h, q }, ground, .. } = near.here;
         let lambda: [R; D] = per_axis!(k => dt * near.spacing.inv[k]);
         let (zero, one) = (R::zero(), R::splat(1.0));
         let moving = divergence(faces, lambda);
@@ -332,7 +333,7 @@ impl<const D: usize, R: Real> Scheme<D, R> for Kinetic {
     }
     fn yield_ratio(&self, stencil: &impl Stencil<D, R, Flow<D, R>, Chute<D, R>>) -> R {
         let near = stencil.star();
-        let Cell { state, ground } = near.here;
+        let Cell { state, ground, .. } = near.here;
         let excess = Self::excess(&near);
         let bound = self.friction.resistance(state.h, R::zero(), ground.cos, ground.cos).holding;
         let none = state.h.le(R::zero()) | bound.le(R::zero());

@@ -1,7 +1,7 @@
 //! What the files of a run show of each model, and how its sources flow.
 
 use crate::hadeler_kuttler::scheme::HadelerKuttler;
-use crate::hadeler_kuttler::{Ground, Pile};
+use crate::hadeler_kuttler::{Ground, Pile, Source};
 use crate::kernels::Kernel;
 use crate::output::summary::Summary;
 use crate::results::Plane;
@@ -89,7 +89,7 @@ impl<const D: usize> Model<D> for HadelerKuttler {
         }
     }
     fn maps(simulation: &mut Simulation<D, Self>, sand: Option<&Sand<D>>) -> Maps {
-        let mut maps = vec![("source", in_cells(simulation, |cell| cell.ground.source.iter().sum()))];
+        let mut maps = vec![("source", in_cells(simulation, |cell| cell.forcing.split.iter().sum()))];
         if let Some(found) = sand.and_then(|sand| sand.equilibrium.as_ref()) {
             maps.push(("determined", found.determined.iter().map(|yes| f64::from(*yes)).collect()));
         }
@@ -135,7 +135,7 @@ fn thickness<const D: usize, G: Bed<D, f64>>(cell: &Cell<Flow<D, f64>, G>) -> f6
 /// A value of every cell of a table, of which the grid of the scheme has one more along each axis.
 fn in_cells<const D: usize>(
     simulation: &Simulation<D, HadelerKuttler>,
-    value: impl Fn(&Cell<Pile<f64>, Ground<D, f64>>) -> f64,
+    value: impl Fn(&Cell<Pile<f64>, Ground<D, f64>, Source<D, f64>>) -> f64,
 ) -> Vec<f64> {
     let cells = simulation.grid().cells.map(|nodes| nodes - 1);
     let mut values = vec![0.0; cells.iter().product()];

@@ -107,7 +107,7 @@ impl<const D: usize> Sand<D> {
     /// Pour as the sources do at `time`.
     pub fn pour(&self, simulation: &mut Simulation<D, HadelerKuttler>, time: f64) {
         let rates = self.rates(time);
-        simulation.change_grounds(|index, _| self.site.ground(index, &rates));
+        simulation.apply(|index, _| self.site.source(index, &rates));
     }
 
     /// What one step of the first-order scheme would change at the equilibrium: max |u_t|, max |v_t|.
@@ -116,6 +116,7 @@ impl<const D: usize> Sand<D> {
         let (ground, state) = (|index| simulation.ground(index), |index| simulation.state(index));
         let mut step = Simulation::new(FIRST_ORDER, self.site.grid(), step, ground, state)
             .expect("a table has a grid, and the scheme takes this step");
+        step.apply(|index, _| simulation.forcing(index));
         let done = step.advance(f64::INFINITY);
         let drift = step.drift();
         if done.is_ok() { [drift[0], drift[1]] } else { [f64::NAN; 2] }

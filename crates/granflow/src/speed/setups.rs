@@ -223,7 +223,6 @@ fn on_table(scheme: HadelerKuttler, extent: Extent) -> Begun<2, HadelerKuttler> 
     let ground = |[i, j]: [usize; 2]| {
         let inside = i < last && j < last;
         hadeler_kuttler::Ground {
-            source: [0.25 * one(inside && extent.is_wet([i, j])); 2],
             bed: 0.0,
             inside: one(inside),
             weight: one(i > 0 && j > 0 && i < last && j < last),
@@ -236,9 +235,12 @@ fn on_table(scheme: HadelerKuttler, extent: Extent) -> Begun<2, HadelerKuttler> 
         let rolls = index.iter().all(|k| *k < last) && extent.is_wet(index);
         Pile { u: 0.5 * from_edge as f64 / extent.cells as f64, v: 0.1 * one(rolls) }
     };
+    let source = |[i, j]: [usize; 2], _| hadeler_kuttler::Source {
+        split: [0.25 * one(i < last && j < last && extent.is_wet([i, j])); 2],
+    };
     let sheet = grid::<2>(extent.cells, Boundary::Absorbing);
-    Begun::new(
-        Simulation::new(scheme, sheet, COURANT, ground, start).expect("a step that the scheme takes"),
-        extent.all(),
-    )
+    let run = Simulation::new(scheme, sheet, COURANT, ground, start);
+    let mut run = run.expect("a step that the scheme takes");
+    run.apply(source);
+    Begun::new(run, extent.all())
 }
