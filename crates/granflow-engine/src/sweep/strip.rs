@@ -109,9 +109,10 @@ pub(super) fn run<'a, 't, const D: usize, L: SimdVector, T: Scheme<D, L>, S: Sch
     found: (&mut [TileStats], &mut [f64]),
     memory: (&mut Scratch<D, L, T>, &mut TileReducer),
 ) {
-    // Mountains, which are kept in single precision, are seldom uniform, and one cell at a time is slow anyway: no loops are
-    // compiled for them.
-    if const { S::Ground::F32_MASK | S::Forcing::F32_MASK == 0 && L::WIDTH > 1 }
+    // Mountains, which are kept in single precision, are seldom uniform, the grounds of a line stay in the nearest cache, and one
+    // cell at a time is slow anyway: no loops are
+    // compiled for these.
+    if const { D > 1 && S::Ground::F32_MASK | S::Forcing::F32_MASK == 0 && L::WIDTH > 1 }
         && tiles.clone().all(|tile| tile.uniform)
     {
         let strip = Strip::<D, true, L, T>::new::<S>(sweep, scheme, tiles.clone(), targets);

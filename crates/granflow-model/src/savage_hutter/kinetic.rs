@@ -131,16 +131,29 @@ impl Kinetic {
         left: &FaceStates<D, R>,
         right: &FaceStates<D, R>,
     ) -> Flow<D, R> {
-        let mean = (left.h + right.h) * R::splat(0.5);
-        let (out, back) = match depth {
-            FaceDepth::Own => (left.halves[axis][1], right.halves[axis][0]),
+        let halves = match depth {
+            FaceDepth::Own => [left.halves[axis][1], right.halves[axis][0]],
             FaceDepth::Mean => {
-                let out = Density::new(mean, mean * left.u[axis], left.beta);
-                let back = Density::new(mean, mean * right.u[axis], right.beta);
-                (out.halves(mean)[1], back.halves(mean)[0])
+                let mean = (left.h + right.h) * R::splat(0.5);
+                let momenta = [mean * left.u[axis], mean * right.u[axis]];
+                Self::halves_at([mean; 2], momenta, [left.beta, right.beta])
             }
         };
-        let mut q: [R; D] = per_axis!(k => out.mass * left.u[k] + back.mass * right.u[k]);
+        Self::sum(axis, halves, [left.u, right.u])
+    }
+
+    /// The two halves that meet at a face, at these depths and momenta.
+    #[inline(always)]
+    fn halves_at<R: Real>(h: [R; 2], q: [R; 2], beta: [R; 2]) -> [Half<R>; 2] {
+        let out = Density::new(h[0], q[0], beta[0]);
+        let back = Density::new(h[1], q[1], beta[1]);
+        [out.halves(h[0])[1], back.halves(h[1])[0]]
+    }
+
+    /// The flux of two halves, which carry the velocities of their cells.
+    #[inline(always)]
+    fn sum<const D: usize, R: Real>(axis: usize, [out, back]: [Half<R>; 2], u: [[R; D]; 2]) -> Flow<D, R> {
+        let mut q: [R; D] = per_axis!(k => out.mass * u[0][k] + back.mass * u[1][k]);
         q[axis] = q[axis] + (out.push + back.push);
         Flow { h: out.mass + back.mass, q }
     }
@@ -151,16 +164,28 @@ impl Kinetic {
         &self,
         near: &Neighbours<D, R, Flow<D, R>, Chute<D, R>>,
     ) -> [Faces<Flow<D, R>>; D] {
-        let here = Self::edges(self.variant.resting, &near.here, &self.primitives(&near.here));
-        per_axis!(axis => {
-            let (lo, hi) = (&near.lo[axis], &near.hi[axis]);
-            let lo = Self::edges(self.variant.resting, lo, &self.primitives(lo));
-            let hi = Self::edges(self.variant.resting, hi, &self.primitives(hi));
-            Faces {
-                lo: Self::through(self.variant.resting, axis, &lo, &here),
-                hi: Self::through(self.variant.resting, axis, &here, &hi),
-            }
+        per_axis!(axis => Faces {
+            lo: self.resting_face(axis, [&near.lo[axis], &near.here]),
+            hi: self.resting_face(axis, [&near.here, &near.hi[axis]]),
         })
+    }
+
+    /// What passes one face so. The depths are chosen before the one formula: it is long.
+    #[inline(always)]
+    fn resting_face<const D: usize, R: Real>(
+        &self,
+        axis: usize,
+        cells: [&Cell<Flow<D, R>, Chute<D, R>>; 2],
+    ) -> Flow<D, R> {
+        let u: [[R; D]; 2] = per_axis!(side => {
+            let prime: [Density<R>; D] = self.primitives(cells[side]);
+            per_axis!(k => prime[k].u)
+        });
+        let mean = (cells[0].state.h + cells[1].state.h) * R::splat(0.5);
+        let own = self.variant.resting == FaceDepth::Own;
+        let h = per_axis!(side => if own { cells[side].state.h } else { mean });
+        let q = per_axis!(side => if own { cells[side].state.q[axis] } else { mean * u[side][axis] });
+        Self::sum(axis, Self::halves_at(h, q, per_axis!(side => cells[side].ground.beta)), u)
     }
 
     /// beta D h - tilt per axis: the pull that friction must hold, as an acceleration.

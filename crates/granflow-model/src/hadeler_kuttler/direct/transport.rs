@@ -7,7 +7,7 @@
 use super::super::scheme::{FIRST_ORDER, FaceStates};
 use super::super::table::Table;
 use super::super::{Ground, Pile, Source};
-use super::Unsteady;
+use super::unsteady::Unsteady;
 use crate::scheme::{Cell, Scheme, Spacing, Stencil};
 use alloc::vec;
 use alloc::vec::Vec;

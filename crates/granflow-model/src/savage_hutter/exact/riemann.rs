@@ -1,6 +1,6 @@
 //! The Riemann problem without source.
 
-use super::{ExactError, Flow1, finite, not_negative, positive};
+use super::values::{ExactError, Flow1, finite, not_negative, positive};
 
 /// One of the two waves of a Riemann solution, by its speeds from left to right.
 #[derive(Debug, Clone, Copy, PartialEq)]
