@@ -73,6 +73,7 @@ impl<const D: usize, S: Kernel<D>> Simulation<D, S> {
             layout: self.layout,
             size: [self.grid.size[0], self.grid.size[D - 1]],
             grounds: &self.grounds,
+            forcings: &self.forcings,
             from: &self.now,
             reach: GHOSTS * self.stages.len(),
             dt,

@@ -21,6 +21,7 @@ pub struct Simulation<const D: usize, S: Scheme<D, f64>> {
     pub(super) layout: Layout,
     pub(super) spacing: Spacing<D, f64>,
     pub(super) grounds: Field,
+    pub(super) forcings: Field,
     pub(super) stages: Stages,
     pub(super) step_size: StepSize,
     pub(super) now: Field,
@@ -42,6 +43,9 @@ pub struct Simulation<const D: usize, S: Scheme<D, f64>> {
     /// Sums over the cells of each tile, per cell measure, and which of them are out of date.
     pub(super) sums: Vec<Totals>,
     pub(super) outdated: Vec<bool>,
+    /// The tiles with a source, and those whose forcing has just been changed.
+    pub(super) poured_on: Vec<bool>,
+    pub(super) forced: Vec<bool>,
     /// The largest rates and speeds by rows of tiles, and the largest changes.
     pub(super) row_max: Vec<TileRowMax>,
     pub(super) row_changes: Vec<f64>,
@@ -81,7 +85,8 @@ pub(super) struct TileRowMax {
 }
 
 impl<const D: usize, S: Scheme<D, f64>> Simulation<D, S> {
-    /// A run from the ground and the initial state of every cell, given by index per axis.
+    /// A run from the ground and the initial state of every cell, given by index per axis; nothing acts on it from outside until
+    /// [`Simulation::apply`] says so (every component of the forcing is 0).
     ///
     /// # Errors
     /// [`BuildError`] for a grid without cells or whose cells have no size, and for a step that the scheme does not take.
@@ -113,6 +118,8 @@ impl<const D: usize, S: Scheme<D, f64>> Simulation<D, S> {
             drift: vec![f64::INFINITY; <S::State as Components<f64>>::COUNT],
             sums: vec![Totals::default(); tiles.len()],
             outdated: vec![true; tiles.len()],
+            poured_on: vec![false; tiles.len()],
+            forced: vec![false; tiles.len()],
             row_max: vec![TileRowMax::default(); tiles.len() / across],
             rate: 0.0,
             with_outlets: Vec::new(),
@@ -123,6 +130,7 @@ impl<const D: usize, S: Scheme<D, f64>> Simulation<D, S> {
             queued: vec![false; tiles.len()],
             found: vec![TileStats::NONE; tiles.len()],
             grounds: bed,
+            forcings: Field::zeros::<S::Forcing>(&layout),
             maps: None,
             time: 0.0,
             step: 0,

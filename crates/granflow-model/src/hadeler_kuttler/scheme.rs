@@ -5,7 +5,7 @@
 //! here as H less the value of B at the face: sand poured within half a cell of a face passes it with the rest, and the
 //! sum over a cell of what is left is its own source.
 
-use super::{Ground, Pile};
+use super::{Ground, Pile, Source};
 use crate::limiter::{Limited, minmod};
 use crate::real::{Real, for_axis, per_axis, power};
 use crate::scheme::{
@@ -214,7 +214,7 @@ impl<const D: usize, R: Real, S: CellSlopes<D, R>> FaceStates<D, R, S> {
 /// Height of the surface at the lower left node of the cell at `offset`.
 #[inline(always)]
 fn surface<const D: usize, R: Real>(
-    stencil: &impl Stencil<D, R, Pile<R>, Ground<D, R>>,
+    stencil: &impl Stencil<D, R, Pile<R>, Ground<D, R>, Source<D, R>>,
     offset: [isize; D],
 ) -> R {
     let cell = stencil.at(offset);
@@ -224,10 +224,10 @@ fn surface<const D: usize, R: Real>(
 /// The cell at `offset` with constant values.
 #[inline(always)]
 fn constant<const D: usize, R: Real, S: CellSlopes<D, R>>(
-    stencil: &impl Stencil<D, R, Pile<R>, Ground<D, R>>,
+    stencil: &impl Stencil<D, R, Pile<R>, Ground<D, R>, Source<D, R>>,
     offset: [isize; D],
 ) -> FaceStates<D, R, S> {
-    let Cell { state, ground } = stencil.at(offset);
+    let Cell { state, ground, forcing } = stencil.at(offset);
     let Spacing { size, inv: per, .. } = stencil.spacing();
     let half = R::splat(0.5);
     let (mut edge, mut slope) = ([R::zero(); D], [R::zero(); D]);
@@ -244,7 +244,7 @@ fn constant<const D: usize, R: Real, S: CellSlopes<D, R>>(
         v: state.v,
         slope,
         edge,
-        poured: per_axis!(k => ground.source[k] * size[k] * half),
+        poured: per_axis!(k => forcing.split[k] * size[k] * half),
         wall: ground.wall,
         place: CellClass::of(&ground),
         slopes: S::none(),
@@ -260,7 +260,7 @@ fn limited<R: Real>(smooth: R::Mask, lo: R, mid: R, hi: R) -> R {
 /// Does one of the two cells along the lower edge of the cell at `along` the axis belong to the table?
 #[inline(always)]
 fn has_edge<const D: usize, R: Real>(
-    stencil: &impl Stencil<D, R, Pile<R>, Ground<D, R>>,
+    stencil: &impl Stencil<D, R, Pile<R>, Ground<D, R>, Source<D, R>>,
     axis: usize,
     along: isize,
 ) -> R::Mask {
@@ -274,7 +274,7 @@ fn has_edge<const D: usize, R: Real>(
 /// Limited differences of everything that varies (eqs. 16-18, 43), 0 beside the edge of the table.
 #[inline(always)]
 fn linear<const D: usize, R: Real, S: CellSlopes<D, R>>(
-    stencil: &impl Stencil<D, R, Pile<R>, Ground<D, R>>,
+    stencil: &impl Stencil<D, R, Pile<R>, Ground<D, R>, Source<D, R>>,
     here: &FaceStates<D, R, S>,
     theta: R,
 ) -> FaceStates<D, R, S> {
@@ -311,7 +311,7 @@ impl<const LIMITED: bool> HadelerKuttler<LIMITED> {
     #[inline(always)]
     fn residual<const D: usize, R: Real>(
         &self,
-        stencil: &impl Stencil<D, R, Pile<R>, Ground<D, R>>,
+        stencil: &impl Stencil<D, R, Pile<R>, Ground<D, R>, Source<D, R>>,
         smallest: R,
     ) -> R {
         // around[y][x], from the neighbour with smaller coordinates; in one dimension the rows are the same.
@@ -329,8 +329,8 @@ impl<const LIMITED: bool> HadelerKuttler<LIMITED> {
                 if axis == 0 { (&around[1][0], &around[1][2]) } else { (&around[0][1], &around[2][1]) };
             Faces { lo: flux(axis, lo, &around[1][1]), hi: flux(axis, &around[1][1], hi) }
         });
-        let ground = stencil.at([0; D]).ground;
-        let rate = rate_of_v(&ground, &faces, &corners, stencil.spacing());
+        let Cell { ground, forcing, .. } = stencil.at([0; D]);
+        let rate = rate_of_v(&ground, &forcing, &faces, &corners, stencil.spacing());
         let [[a, b], [c, d]]: [[R; 2]; 2] = per_axis!(y => per_axis!(x => corners[y][x].abs()));
         let corners = if D > 1 { ((a + d) + (b + c)) * R::splat(0.5) } else { a + b };
         corners + rate.abs() * smallest
@@ -341,7 +341,7 @@ impl<const LIMITED: bool> HadelerKuttler<LIMITED> {
     fn theta<const D: usize, R: Real>(
         &self,
         exponent: f64,
-        stencil: &impl Stencil<D, R, Pile<R>, Ground<D, R>>,
+        stencil: &impl Stencil<D, R, Pile<R>, Ground<D, R>, Source<D, R>>,
     ) -> R {
         let smallest = stencil.spacing().smallest;
         let residual = self.residual(stencil, R::splat(smallest));
@@ -442,14 +442,14 @@ fn corner<const D: usize, R: Real, S: CellSlopes<D, R>>(around: [[&FaceStates<D,
 #[inline(always)]
 fn rate_of_v<const D: usize, R: Real>(
     ground: &Ground<D, R>,
+    source: &Source<D, R>,
     faces: &[Faces<R>; D],
     corners: &[[R; 2]; 2],
     spacing: &Spacing<D, R>,
 ) -> R {
-    let (mut flow, mut poured) = (R::zero(), R::zero());
+    let (mut flow, poured) = (R::zero(), source.rate());
     for_axis!(axis in D => {
         flow = flow + (faces[axis].hi - faces[axis].lo) * spacing.inv[axis];
-        poured = poured + ground.source[axis];
     });
     let [[a, b], [c, d]] = *corners;
     let mean = if D > 1 { ((a + d) + (b + c)) * R::splat(0.25) } else { (a + b) * R::splat(0.5) };
@@ -462,6 +462,7 @@ where
 {
     type State = Pile<R>;
     type Ground = Ground<D, R>;
+    type Forcing = Source<D, R>;
     type Primitives = ();
     type FaceStates = FaceStates<D, R, <Limited<LIMITED> as SlopeStorage>::CellSlopes<D, R>>;
     type Flux = R;
@@ -489,9 +490,13 @@ where
         }
     }
     #[inline(always)]
-    fn primitives(&self, _here: &Cell<Pile<R>, Ground<D, R>>) {}
+    fn primitives(&self, _here: &Cell<Pile<R>, Ground<D, R>, Source<D, R>>) {}
     #[inline(always)]
-    fn reconstruct(&self, stencil: &impl Stencil<D, R, Pile<R>, Ground<D, R>>, _: &()) -> Self::FaceStates {
+    fn reconstruct(
+        &self,
+        stencil: &impl Stencil<D, R, Pile<R>, Ground<D, R>, Source<D, R>>,
+        _: &(),
+    ) -> Self::FaceStates {
         let constant: Self::FaceStates = constant(stencil, [0; D]);
         let theta = match self.slopes {
             Slopes::None => return constant,
@@ -511,7 +516,7 @@ where
     #[inline(always)]
     fn update(
         &self,
-        stencil: &impl Stencil<D, R, Pile<R>, Ground<D, R>>,
+        stencil: &impl Stencil<D, R, Pile<R>, Ground<D, R>, Source<D, R>>,
         _edges: &Self::FaceStates,
         faces: &[Faces<R>; D],
         corners: &[[R; 2]; 2],
@@ -520,7 +525,7 @@ where
         let here = stencil.at([0; D]);
         Pile {
             u: here.state.u - dt * corners[0][0],
-            v: here.state.v + dt * rate_of_v(&here.ground, faces, corners, stencil.spacing()),
+            v: here.state.v + dt * rate_of_v(&here.ground, &here.forcing, faces, corners, stencil.spacing()),
         }
     }
 
@@ -534,7 +539,7 @@ where
     /// sum over axes of max(1, v)/h, + 1: the bound of eqs. 26, 27 with slopes up to 1 is dt times this <= 1, or 1/2 with
     /// slopes.
     #[inline(always)]
-    fn rate(&self, here: &Cell<Pile<R>, Ground<D, R>>, spacing: &Spacing<D, R>) -> R {
+    fn rate(&self, here: &Cell<Pile<R>, Ground<D, R>, Source<D, R>>, spacing: &Spacing<D, R>) -> R {
         let fastest = R::splat(1.0).max(here.state.v);
         let mut sum = R::splat(1.0);
         for_axis!(axis in D => {
@@ -549,10 +554,10 @@ where
     }
     /// No sand rolls here and none is poured.
     #[inline(always)]
-    fn is_static(&self, here: &Cell<Pile<R>, Ground<D, R>>) -> R::Mask {
+    fn is_static(&self, here: &Cell<Pile<R>, Ground<D, R>, Source<D, R>>) -> R::Mask {
         let mut sum = here.state.v.abs();
         for_axis!(axis in D => {
-            sum = sum + here.ground.source[axis].abs();
+            sum = sum + here.forcing.split[axis].abs();
         });
         sum.equals(R::zero())
     }
@@ -568,19 +573,15 @@ where
         R::any(leaves).then_some(way)
     }
     #[inline(always)]
-    fn source_rate(&self, ground: &Ground<D, R>) -> R {
-        let mut sum = R::zero();
-        for_axis!(axis in D => {
-            sum = sum + ground.source[axis];
-        });
-        sum
+    fn source_rate(&self, source: &Source<D, R>) -> R {
+        source.rate()
     }
     #[inline(always)]
     fn outflow(&self, flux: &R, _side: Side) -> R {
         -*flux
     }
     /// |grad(u + b)| in the cell: 1 is the steepest slope.
-    fn yield_ratio(&self, stencil: &impl Stencil<D, R, Pile<R>, Ground<D, R>>) -> R {
+    fn yield_ratio(&self, stencil: &impl Stencil<D, R, Pile<R>, Ground<D, R>, Source<D, R>>) -> R {
         let edges: FaceStates<D, R, ()> = constant(stencil, [0; D]);
         let mut square = R::zero();
         for_axis!(axis in D => {
@@ -590,8 +591,8 @@ where
     }
     /// Thickness of the pile; in place of a speed the rolling layer, which is what moves.
     #[inline(always)]
-    fn diagnostics(&self, here: &Cell<Pile<R>, Ground<D, R>>) -> Diagnostics<R> {
-        let Cell { state, ground } = here;
+    fn diagnostics(&self, here: &Cell<Pile<R>, Ground<D, R>, Source<D, R>>) -> Diagnostics<R> {
+        let Cell { state, ground, .. } = here;
         Diagnostics {
             volume: ground.weight * state.u + state.v,
             speed_squared: state.v * state.v,

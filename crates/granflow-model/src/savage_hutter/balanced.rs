@@ -8,7 +8,7 @@ use super::flux::{Density, Half};
 use super::friction::Friction;
 use super::ground::{Bed, Towards};
 use super::{Flow, normal};
-use crate::limiter::{self, Limited};
+use crate::limiter;
 use crate::real::{Real, for_axis, largest, per_axis, total};
 use crate::scheme::{
     Cell, Components, Diagnostics, Faces, Neighbours, Scheme, SchemeVisitor, Side, Spacing, Stencil,
@@ -17,11 +17,11 @@ use crate::scheme::{
 use crate::time::{EULER, SSP_RK2, Stages};
 use core::marker::PhantomData;
 
-/// The default scheme: friction law, thinnest moving depth, order of accuracy. Where it is known that there are no slopes,
-/// `LIMITED` is false.
+/// The default scheme: friction law, thinnest moving depth, order of accuracy. `ORDER` is the order where it is known when the
+/// inner loops are compiled, 1 or 2, so that each order has loops of its own; else 0.
 #[derive(Clone, Copy, Debug)]
 #[repr(C)]
-pub struct Balanced<F, B, const LIMITED: bool = true> {
+pub struct Balanced<F, B, const ORDER: u8 = 0> {
     /// A cell thinner than this keeps what it has (units of h); at least the smallest normal number. (It comes before the law: the
     /// compiler reads all parameters of a law at once, and what follows them, and then takes that apart in every cell.)
     film: f64,
@@ -112,15 +112,27 @@ impl<const D: usize, R: Real> CellSlopes<D, R> for Slope<D, R> {
     }
 }
 
+/// The order of a scheme: 1, 2, or 0 where it is not known when the inner loops are compiled.
+#[derive(Clone, Copy, Debug)]
+pub struct Order<const ORDER: u8>;
+
 /// How values vary across the cells of a scheme.
 pub trait SlopeStorage: Copy + Send + Sync + 'static {
+    /// Do they vary, if that is known?
+    const LIMITED: Option<bool>;
     /// Along one axis.
     type CellSlopes<const D: usize, R: Real>: CellSlopes<D, R>;
 }
-impl SlopeStorage for Limited<false> {
+impl SlopeStorage for Order<1> {
+    const LIMITED: Option<bool> = Some(false);
     type CellSlopes<const D: usize, R: Real> = ();
 }
-impl SlopeStorage for Limited<true> {
+impl SlopeStorage for Order<2> {
+    const LIMITED: Option<bool> = Some(true);
+    type CellSlopes<const D: usize, R: Real> = Slope<D, R>;
+}
+impl SlopeStorage for Order<0> {
+    const LIMITED: Option<bool> = None;
     type CellSlopes<const D: usize, R: Real> = Slope<D, R>;
 }
 
@@ -222,7 +234,7 @@ struct PotentialJump<R> {
     bed_jump: [R; 2],
 }
 
-impl<F: Friction, B: Copy, const LIMITED: bool> Balanced<F, B, LIMITED> {
+impl<F: Friction, B: Copy, const ORDER: u8> Balanced<F, B, ORDER> {
     /// A pull this much above the static bound still counts as held.
     const SLACK: f64 = 1.0 + 1e-10;
 
@@ -279,7 +291,7 @@ impl<F: Friction, B: Copy, const LIMITED: bool> Balanced<F, B, LIMITED> {
     where
         B: Bed<D, R>,
     {
-        let Cell { state, ground } = &near.here;
+        let Cell { state, ground, .. } = &near.here;
         let dx = near.spacing.size[axis];
         let (a, b) = (&near.lo[axis], &near.hi[axis]);
         let bed_jump = [
@@ -324,14 +336,23 @@ impl<F: Friction, B: Copy, const LIMITED: bool> Balanced<F, B, LIMITED> {
     }
 }
 
-type SlopesOf<const D: usize, R, const LIMITED: bool> = <Limited<LIMITED> as SlopeStorage>::CellSlopes<D, R>;
-type EdgesOf<const D: usize, R, B, const LIMITED: bool> =
-    FaceStates<D, R, SlopesOf<D, R, LIMITED>, <B as Bed<D, R>>::Plane>;
+type SlopesOf<const D: usize, R, const ORDER: u8> = <Order<ORDER> as SlopeStorage>::CellSlopes<D, R>;
+type EdgesOf<const D: usize, R, B, const ORDER: u8> =
+    FaceStates<D, R, SlopesOf<D, R, ORDER>, <B as Bed<D, R>>::Plane>;
 
-impl<F: Friction, B: Copy, const LIMITED: bool> Balanced<F, B, LIMITED>
+impl<F: Friction, B: Copy, const ORDER: u8> Balanced<F, B, ORDER>
 where
-    Limited<LIMITED>: SlopeStorage,
+    Order<ORDER>: SlopeStorage,
 {
+    /// Do depth and velocity vary across a cell?
+    #[inline(always)]
+    fn limited(&self) -> bool {
+        match Order::<ORDER>::LIMITED {
+            Some(limited) => limited,
+            None => self.slopes,
+        }
+    }
+
     /// Limited slopes along one axis, and the halves at the cell's two ends.
     #[inline(always)]
     fn limited_slopes<const D: usize, R: Real>(
@@ -339,7 +360,7 @@ where
         near: &Neighbours<D, R, Flow<D, R>, B>,
         u: [R; D],
         axis: usize,
-        edges: &mut EdgesOf<D, R, B, LIMITED>,
+        edges: &mut EdgesOf<D, R, B, ORDER>,
     ) where
         B: Bed<D, R>,
     {
@@ -360,7 +381,7 @@ where
             let most = Self::max_slope(h, dh.abs(), u[axis].abs(), beta);
             du[axis] = R::select(wide, du[axis].min(most).max(-most), du[axis]);
         }
-        let slopes = SlopesOf::<D, R, LIMITED>::by(dh, du);
+        let slopes = SlopesOf::<D, R, ORDER>::by(dh, du);
         edges.slopes[axis] = slopes;
         let depth = [slopes.depth(Towards::Lo, h), slopes.depth(Towards::Hi, h)];
         let velocity = [slopes.velocity(Towards::Lo, u)[axis], slopes.velocity(Towards::Hi, u)[axis]];
@@ -380,7 +401,7 @@ struct StaticBalance<const D: usize, R> {
     holding: R,
 }
 
-impl<F: Friction, B: Copy, const LIMITED: bool> Balanced<F, B, LIMITED> {
+impl<F: Friction, B: Copy, const ORDER: u8> Balanced<F, B, ORDER> {
     /// Acceleration of a cell by the bed, and by thickness where the flux does not carry it, beside what passes its faces.
     #[inline(always)]
     fn pull<const D: usize, R: Real>(
@@ -437,7 +458,7 @@ impl<F: Friction, B: Copy, const LIMITED: bool> Balanced<F, B, LIMITED> {
             near.lo[axis].ground = near.lo[axis].ground.exact();
             near.hi[axis].ground = near.hi[axis].ground.exact();
         });
-        let Cell { state, ground } = &near.here;
+        let Cell { state, ground, .. } = &near.here;
         let zero = R::zero();
         let (mut lo, mut hi, mut drop) = ([zero; D], [zero; D], [zero; D]);
         for_axis!(axis in D => {
@@ -452,15 +473,16 @@ impl<F: Friction, B: Copy, const LIMITED: bool> Balanced<F, B, LIMITED> {
     }
 }
 
-impl<F: Friction, const D: usize, R: Real, B: Bed<D, R>, const LIMITED: bool> Scheme<D, R>
-    for Balanced<F, B, LIMITED>
+impl<F: Friction, const D: usize, R: Real, B: Bed<D, R>, const ORDER: u8> Scheme<D, R>
+    for Balanced<F, B, ORDER>
 where
-    Limited<LIMITED>: SlopeStorage,
+    Order<ORDER>: SlopeStorage,
 {
     type State = Flow<D, R>;
     type Ground = B;
+    type Forcing = ();
     type Primitives = [Density<R>; D];
-    type FaceStates = EdgesOf<D, R, B, LIMITED>;
+    type FaceStates = EdgesOf<D, R, B, ORDER>;
     type Flux = Flux<D, R>;
     type Corner = ();
 
@@ -476,15 +498,15 @@ where
     fn with_scalar<L: Real, V: SchemeVisitor<D, L>>(&self, visitor: V) -> V::Output {
         let Balanced { friction, film, slopes, .. } = *self;
         if slopes {
-            visitor.visit(&Balanced::<F, B::On<L>, true> { friction, film, slopes, bed: PhantomData })
+            visitor.visit(&Balanced::<F, B::On<L>, 2> { friction, film, slopes, bed: PhantomData })
         } else {
-            visitor.visit(&Balanced::<F, B::On<L>, false> { friction, film, slopes, bed: PhantomData })
+            visitor.visit(&Balanced::<F, B::On<L>, 1> { friction, film, slopes, bed: PhantomData })
         }
     }
 
     #[inline(always)]
-    fn primitives(&self, Cell { state, ground }: &Cell<Flow<D, R>, B>) -> [Density<R>; D] {
-        if LIMITED && self.slopes {
+    fn primitives(&self, Cell { state, ground, .. }: &Cell<Flow<D, R>, B>) -> [Density<R>; D] {
+        if self.limited() {
             // The halves are those of the cell's ends; here only the velocity is needed.
             let u = state.velocity();
             return per_axis!(axis => Density::mean(u[axis]));
@@ -499,14 +521,14 @@ where
         prime: &[Density<R>; D],
     ) -> Self::FaceStates {
         let near = stencil.star();
-        let Cell { state, ground } = near.here;
+        let Cell { state, ground, .. } = near.here;
         let per = near.spacing.inv;
         let u: [R; D] = per_axis!(axis => prime[axis].u);
         let dry = self.is_dry(state.h, &ground);
         let mut edges = FaceStates {
             h: state.h,
             u,
-            slopes: [SlopesOf::<D, R, LIMITED>::none(); D],
+            slopes: [SlopesOf::<D, R, ORDER>::none(); D],
             half: [[Half::none(); 2]; D],
             plane: ground.plane(),
             class: CellClass::dry(dry),
@@ -534,7 +556,7 @@ where
             }
         }
         for_axis!(axis in D => {
-            if LIMITED && self.slopes {
+            if self.limited() {
                 self.limited_slopes(&near, u, axis, &mut edges);
             } else {
                 edges.half[axis] = prime[axis].halves(state.h.positive_part());
@@ -595,7 +617,7 @@ where
         _corners: &[[(); 2]; 2],
         dt: R,
     ) -> Flow<D, R> {
-        let Cell { state, ground } = stencil.at([0; D]);
+        let Cell { state, ground, .. } = stencil.at([0; D]);
         let (bed, spacing) = (ground.exact(), stencil.spacing());
         let (zero, per) = (R::zero(), spacing.inv);
         let Flow { h, q } = state;
@@ -626,7 +648,7 @@ where
         let mut moved: [R; D] = per_axis!(k => q[k] - lost[k]);
         // The depth under the source: the new one keeps draining cells bounded; at second order the old one
         // keeps the map a forward-Euler step wherever the depth does not halve.
-        let depth = if LIMITED && self.slopes { h.min(new + new) } else { new }.positive_part();
+        let depth = if self.limited() { h.min(new + new) } else { new }.positive_part();
         let pull = match bed.uniform_driving_force() {
             Some(slide) if all_open => slide,
             slide => {
@@ -664,7 +686,7 @@ where
             keep = keep * (R::splat(2.0) / (R::splat(1.0) + (R::splat(1.0) + R::splat(4.0) * z).sqrt()));
         }
         let mut slowed: [R; D] = per_axis!(k => R::select(stops, zero, moved[k] * keep));
-        if LIMITED && self.slopes {
+        if self.limited() {
             // Along the new velocity friction is first order in time where the flow turns. Where a step takes at most
             // a quarter of the momentum it acts along the old one, as in a forward-Euler step.
             let speed = square.sqrt();

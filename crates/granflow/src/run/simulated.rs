@@ -11,7 +11,8 @@ use std::borrow::Cow;
 use std::time::{Duration, Instant};
 
 /// Ground and state of a cell of a scheme.
-pub type CellOf<const D: usize, S> = Cell<<S as Scheme<D, f64>>::State, <S as Scheme<D, f64>>::Ground>;
+pub type CellOf<const D: usize, S> =
+    Cell<<S as Scheme<D, f64>>::State, <S as Scheme<D, f64>>::Ground, <S as Scheme<D, f64>>::Forcing>;
 
 /// Where the numbers of a field come from.
 pub enum Value<const D: usize, S: Scheme<D, f64>> {
