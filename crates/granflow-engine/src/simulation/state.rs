@@ -6,6 +6,7 @@ use super::totals::Totals;
 use crate::boundary;
 use crate::field::Field;
 use crate::grid::{Grid, Layout};
+use crate::kernel::{Kernel, Loops};
 use crate::lanes::SimdLevel;
 use crate::observe::Maps;
 use crate::sweep::tracked;
@@ -17,6 +18,7 @@ use granflow_model::time::Stages;
 /// The fields of a run, its clock and its ledger.
 pub struct Simulation<const D: usize, S: Scheme<D, f64>> {
     pub(super) scheme: S,
+    pub(super) loops: Loops<S>,
     pub(super) grid: Grid<D>,
     pub(super) layout: Layout,
     pub(super) spacing: Spacing<D, f64>,
@@ -84,13 +86,29 @@ pub(super) struct TileRowMax {
     pub stale: bool,
 }
 
-impl<const D: usize, S: Scheme<D, f64>> Simulation<D, S> {
-    /// A run from the ground and the initial state of every cell, given by index per axis; nothing acts on it from outside until
-    /// [`Simulation::apply`] says so (every component of the forcing is 0).
+impl<const D: usize, S: Kernel<D>> Simulation<D, S> {
+    /// A run from the ground and the initial state of every cell, given by index per axis; nothing is poured.
     ///
     /// # Errors
     /// [`BuildError`] for a grid without cells or whose cells have no size, and for a step that the scheme does not take.
     pub fn new(
+        scheme: S,
+        grid: Grid<D>,
+        step_size: StepSize,
+        ground: impl Fn([usize; D]) -> S::Ground + Sync,
+        initial: impl Fn([usize; D]) -> S::State + Sync,
+    ) -> Result<Self, BuildError> {
+        Self::with_loops(Loops::of::<D>(), scheme, grid, step_size, ground, initial)
+    }
+}
+
+impl<const D: usize, S: Scheme<D, f64>> Simulation<D, S> {
+    /// [`Simulation::new`] with inner loops that [`crate::kernel!`] made a constant of.
+    ///
+    /// # Errors
+    /// As [`Simulation::new`].
+    pub fn with_loops(
+        loops: Loops<S>,
         scheme: S,
         grid: Grid<D>,
         step_size: StepSize,
@@ -140,6 +158,7 @@ impl<const D: usize, S: Scheme<D, f64>> Simulation<D, S> {
             poured: CompensatedSum::default(),
             last_dt: 0.0,
             stages: scheme.stages(),
+            loops,
             scheme,
             grid,
             layout,

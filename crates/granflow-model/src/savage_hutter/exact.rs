@@ -61,6 +61,9 @@ mod tests {
         assert!(super::values::not_negative("depth", f64::NAN).is_err());
         assert!(super::values::angle("slope", 1.6).is_err());
         assert!(super::values::finite("velocity", f64::INFINITY).is_err());
-        assert!(matches!(super::values::angle("slope", -0.1), Err(ExactError::OutOfRange { name: "slope", .. })));
+        assert!(matches!(
+            super::values::angle("slope", -0.1),
+            Err(ExactError::OutOfRange { name: "slope", .. })
+        ));
     }
 }
