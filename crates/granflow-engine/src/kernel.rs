@@ -12,22 +12,22 @@ pub trait Kernel<const D: usize>: Scheme<D, f64> {
 
 /// The inner loops of a scheme in one number of dimensions, compiled by [`crate::kernel!`]: how a type of other crates, say
 /// `Balanced` with a friction law of your own, is stepped ([`crate::simulation::Simulation::with_loops`]).
-pub struct Loops<S>(fn(&S, &Sweep, Output));
+pub struct Loops<const D: usize, S>(fn(&S, &Sweep, Output));
 
-impl<S> Clone for Loops<S> {
+impl<const D: usize, S> Clone for Loops<D, S> {
     fn clone(&self) -> Self {
         *self
     }
 }
-impl<S> Copy for Loops<S> {}
+impl<const D: usize, S> Copy for Loops<D, S> {}
 
-impl<S> Loops<S> {
+impl<const D: usize, S> Loops<D, S> {
     #[doc(hidden)]
     pub const fn new(sweep: fn(&S, &Sweep, Output)) -> Self {
         Loops(sweep)
     }
     /// Those of a scheme that has its own.
-    pub(crate) const fn of<const D: usize>() -> Self
+    pub(crate) const fn of() -> Self
     where
         S: Kernel<D>,
     {
@@ -57,7 +57,7 @@ macro_rules! kernel {
         mod $module {
             $crate::contexts!();
         }
-        const $name: $crate::kernel::Loops<$scheme> =
+        const $name: $crate::kernel::Loops<$dimensions, $scheme> =
             $crate::kernel::Loops::new(|scheme, sweep: &$crate::private::Sweep, output| {
                 sweep.run::<$dimensions, _, $module::Here>(scheme, output);
             });

@@ -18,7 +18,7 @@ use granflow_model::time::Stages;
 /// The fields of a run, its clock and its ledger.
 pub struct Simulation<const D: usize, S: Scheme<D, f64>> {
     pub(super) scheme: S,
-    pub(super) loops: Loops<S>,
+    pub(super) loops: Loops<D, S>,
     pub(super) grid: Grid<D>,
     pub(super) layout: Layout,
     pub(super) spacing: Spacing<D, f64>,
@@ -77,6 +77,14 @@ pub struct Simulation<const D: usize, S: Scheme<D, f64>> {
     pub(super) last_dt: f64,
 }
 
+/// The field whose cells have these values, given by index per axis.
+fn laid_out<const D: usize, P: Components<f64>>(layout: &Layout, value: impl Fn([usize; D]) -> P + Sync) -> Field {
+    const { assert!(D == 1 || D == 2, "a grid has one dimension or two") };
+    let mut field = Field::zeros::<P>(layout);
+    field.fill(layout, |column, row| value(per_axis!(k => if k == 0 { column } else { row })));
+    field
+}
+
 /// What is largest in a row of tiles.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct TileRowMax {
@@ -98,7 +106,7 @@ impl<const D: usize, S: Kernel<D>> Simulation<D, S> {
         ground: impl Fn([usize; D]) -> S::Ground + Sync,
         initial: impl Fn([usize; D]) -> S::State + Sync,
     ) -> Result<Self, BuildError> {
-        Self::with_loops(Loops::of::<D>(), scheme, grid, step_size, ground, initial)
+        Self::with_loops(Loops::of(), scheme, grid, step_size, ground, initial)
     }
 }
 
@@ -108,22 +116,18 @@ impl<const D: usize, S: Scheme<D, f64>> Simulation<D, S> {
     /// # Errors
     /// As [`Simulation::new`].
     pub fn with_loops(
-        loops: Loops<S>,
+        loops: Loops<D, S>,
         scheme: S,
         grid: Grid<D>,
         step_size: StepSize,
         ground: impl Fn([usize; D]) -> S::Ground + Sync,
         initial: impl Fn([usize; D]) -> S::State + Sync,
     ) -> Result<Self, BuildError> {
-        const { assert!(D == 1 || D == 2, "a grid has one dimension or two") };
         check(&grid, step_size, scheme.max_courant())?;
         let layout = Layout::of(&grid);
-        let mut bed = Field::zeros::<S::Ground>(&layout);
-        let mut now = Field::zeros::<S::State>(&layout);
-        let index = |column: usize, row: usize| per_axis!(k => if k == 0 { column } else { row });
-        bed.fill(&layout, |column, row| ground(index(column, row)));
-        now.fill(&layout, |column, row| initial(index(column, row)));
-        boundary::fill(&mut bed, &grid, &layout, |axis, g| scheme.mirror_ground(axis, &g));
+        let mut grounds = laid_out::<D, S::Ground>(&layout, ground);
+        boundary::fill(&mut grounds, &grid, &layout, |axis, g| scheme.mirror_ground(axis, &g));
+        let now = laid_out::<D, S::State>(&layout, initial);
         let (tiles, across) = cut(&layout);
         let tracked = tracked::<D, S>();
         let mut simulation = Simulation {
@@ -141,13 +145,13 @@ impl<const D: usize, S: Scheme<D, f64>> Simulation<D, S> {
             row_max: vec![TileRowMax::default(); tiles.len() / across],
             rate: 0.0,
             with_outlets: Vec::new(),
-            active: Vec::with_capacity(tiles.len()),
+            active: (0..tiles.len() as u32).collect(),
             awake: Vec::with_capacity(tiles.len()),
             blocks: Vec::with_capacity(tiles.len()),
             frontier: Vec::with_capacity(tiles.len()),
             queued: vec![false; tiles.len()],
             found: vec![TileStats::NONE; tiles.len()],
-            grounds: bed,
+            grounds,
             forcings: Field::zeros::<S::Forcing>(&layout),
             maps: None,
             time: 0.0,
@@ -169,7 +173,6 @@ impl<const D: usize, S: Scheme<D, f64>> Simulation<D, S> {
             outlets: Vec::new(),
             simd: SimdLevel::Best,
         };
-        simulation.wake_all();
         simulation.rebuild_ground_cache();
         simulation.rescan();
         Ok(simulation)
