@@ -56,11 +56,14 @@ mod tests {
 
     #[test]
     fn errors_name_the_parameter_and_the_range() {
-        let text = super::positive("height", -1.0).unwrap_err().to_string();
+        let text = super::values::positive("height", -1.0).unwrap_err().to_string();
         assert_eq!(text, "height = -1, but it must be positive and finite");
-        assert!(super::not_negative("depth", f64::NAN).is_err());
-        assert!(super::angle("slope", 1.6).is_err());
-        assert!(super::finite("velocity", f64::INFINITY).is_err());
-        assert!(matches!(super::angle("slope", -0.1), Err(ExactError::OutOfRange { name: "slope", .. })));
+        assert!(super::values::not_negative("depth", f64::NAN).is_err());
+        assert!(super::values::angle("slope", 1.6).is_err());
+        assert!(super::values::finite("velocity", f64::INFINITY).is_err());
+        assert!(matches!(
+            super::values::angle("slope", -0.1),
+            Err(ExactError::OutOfRange { name: "slope", .. })
+        ));
     }
 }
