@@ -173,7 +173,7 @@ fn copy<T: Copy + Default>(part: &[T]) -> Vec<T> {
 }
 
 /// An array of zeros, on large pages where the system has them: a strip goes from row to row, and rows far from each other
-/// lie on as many small pages as there are rows and arrays.
+/// are on as many small pages as there are rows and arrays.
 pub(crate) fn zeros<T: Copy + Default>(len: usize) -> Vec<T> {
     let numbers = vec![T::default(); len];
     #[cfg(target_os = "linux")]

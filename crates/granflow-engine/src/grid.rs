@@ -1,4 +1,4 @@
-//! The uniform grid, and how its cells lie in memory.
+//! The uniform grid, and where its cells are in memory.
 
 use granflow_model::scheme::Boundary;
 

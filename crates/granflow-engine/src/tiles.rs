@@ -15,7 +15,7 @@ pub(crate) const fn tile_size(dimensions: usize) -> [usize; 2] {
 /// The most rows of tiles that one thread computes in one go: the rows between them are then read once.
 pub(crate) const MAX_TILES: usize = 6;
 
-/// The five ways out of the domain, as the ledger counts them.
+/// The five outlets of the domain, as the ledger counts them.
 pub const OUTLETS: [&str; 5] = ["left", "right", "bottom", "top", "nodata"];
 
 /// A rectangle of cells, half open.

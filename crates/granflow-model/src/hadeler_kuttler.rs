@@ -68,7 +68,7 @@ pub struct Ground<const D: usize, R> {
     pub weight: R,
     /// 1 where the face at the cell's lower end of an axis is a wall, if it is an edge of the table.
     pub wall: [R; D],
-    /// 1 where the cell lies in a hole of the table: outside, and enclosed.
+    /// 1 where the cell is in a hole of the table: outside, and enclosed.
     pub hole: R,
 }
 

@@ -174,7 +174,7 @@ pub struct Faces<F> {
     pub hi: F,
 }
 
-/// The side of a face on which a cell lies.
+/// The side of a face on which a cell is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Side {
     /// The cell with the smaller coordinate.
@@ -192,12 +192,12 @@ pub enum Boundary {
     Wall,
     /// The two ends of the axis are joined.
     Periodic,
-    /// Nothing lies beyond: what leaves is booked and gone, nothing comes back. The edge of a raster.
+    /// Nothing is beyond: what leaves is added to the outflow, nothing comes back. The edge of a raster.
     Absorbing,
 }
 
 /// A finite-volume scheme: U -> E_dt(U), written for one cell, one face and one corner.
-/// `reconstruct` sees a cell and its neighbours, `flux` the edges of two cells, `corner` those of the cells around a
+/// `reconstruct` sees a cell and its neighbours, `flux` the face states of two cells, `corner` those of the cells around a
 /// corner, `update` a cell with what its faces and corners found. A Runge-Kutta method is a convex combination of such
 /// maps ([`crate::time`]).
 pub trait Scheme<const D: usize, R: Real>: Copy + Send + Sync {
@@ -241,7 +241,7 @@ pub trait Scheme<const D: usize, R: Real>: Copy + Send + Sync {
     fn reconstruct(
         &self,
         stencil: &impl Stencil<D, R, Self::State, Self::Ground, Self::Forcing>,
-        prime: &Self::Primitives,
+        primitives: &Self::Primitives,
     ) -> Self::FaceStates;
     /// What passes the face between `left` and `right` along `axis`.
     fn flux(&self, axis: usize, left: &Self::FaceStates, right: &Self::FaceStates) -> Self::Flux;
@@ -253,7 +253,7 @@ pub trait Scheme<const D: usize, R: Real>: Copy + Send + Sync {
     fn update(
         &self,
         stencil: &impl Stencil<D, R, Self::State, Self::Ground, Self::Forcing>,
-        edges: &Self::FaceStates,
+        face_states: &Self::FaceStates,
         faces: &[Faces<Self::Flux>; D],
         corners: &[[Self::Corner; 2]; 2],
         dt: R,
@@ -274,9 +274,9 @@ pub trait Scheme<const D: usize, R: Real>: Copy + Send + Sync {
     fn rk_combine(&self, keep: R, old: &Self::State, new: &Self::State) -> Self::State;
     /// The cell rests by a proof of the scheme (or is dry): with neighbours at rest nothing will change here.
     fn is_static(&self, here: &Cell<Self::State, Self::Ground, Self::Forcing>) -> R::Mask;
-    /// The cell lies outside the data and holds nothing that is computed.
+    /// The cell is outside the data, and nothing is computed there.
     fn is_nodata(&self, ground: &Self::Ground) -> R::Mask;
-    /// Under which of the five exits the books put what passes from `here` to `there`, `way` being the one on that side;
+    /// The outlet, of the five of the ledger, by which what passes from `here` to `there` leaves, `way` being the one on that side;
     /// none where it stays in the domain.
     fn outlet(&self, _here: &Self::Ground, there: &Self::Ground, _way: usize) -> Option<usize> {
         R::any(self.is_nodata(there)).then_some(4)
@@ -285,7 +285,7 @@ pub trait Scheme<const D: usize, R: Real>: Copy + Send + Sync {
     fn source_rate(&self, _forcing: &Self::Forcing) -> R {
         R::zero()
     }
-    /// Volume per time and face length that the cell on `side` books as leaving it to the other side.
+    /// Volume per time and face length that leaves the cell on `side` towards the other side.
     fn outflow(&self, flux: &Self::Flux, side: Side) -> R;
     /// Pull of the mass if it were at rest, as a share of the static bound: up to 1 it stays; 0 where dry and where
     /// nothing holds.

@@ -5,7 +5,7 @@ use granflow_model::real::Real;
 /// The most numbers side by side.
 pub(crate) const MAX_LANES: usize = 16;
 
-/// A number, or several, that lie side by side in memory.
+/// A number, or several that are side by side in memory.
 pub trait SimdVector: Real {
     /// How many.
     const WIDTH: usize;

@@ -10,7 +10,7 @@ use granflow_model::scheme::Scheme;
 pub const CLOCK: usize = 3 + 2 * OUTLETS.len() + 3;
 
 impl<const D: usize, S: Scheme<D, f64>> Simulation<D, S> {
-    /// The numbers that a restart needs: time, step, updates, and the books.
+    /// The numbers that a restart needs: time, step, updates, and the ledger.
     pub fn clock(&self) -> Vec<f64> {
         let mut numbers = vec![self.time, self.step as f64, self.updates as f64];
         numbers.extend(self.out.iter().flat_map(|sum| sum.parts()));
@@ -43,7 +43,7 @@ impl<const D: usize, S: Scheme<D, f64>> Simulation<D, S> {
         fits
     }
 
-    /// Give back what only steps need, for there will be none, or none before [`Simulation::restore`].
+    /// Give back the memory that only steps need, for there will be none, or none before [`Simulation::restore`].
     pub fn release_buffers(&mut self) {
         self.next = Field::default();
     }

@@ -5,6 +5,6 @@
 pub enum StepSize {
     /// The same dt every step.
     Fixed(f64),
-    /// dt = courant / max over cells of [`Scheme::rate`].
+    /// dt = courant / max over cells of [`granflow_model::scheme::Scheme::rate`].
     Courant(f64),
 }

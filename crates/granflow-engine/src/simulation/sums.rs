@@ -58,7 +58,7 @@ impl<const D: usize, S: Scheme<D, f64>> Simulation<D, S> {
         totals
     }
 
-    /// See the cells of a tile that lie inside the data.
+    /// See the cells of a tile that are inside the data.
     pub(super) fn visit(&self, tile: &Tile, mut see: impl FnMut(&Cell<S::State, S::Ground, S::Forcing>)) {
         let Tile { columns, rows, .. } = *tile;
         let width = columns[1] - columns[0];

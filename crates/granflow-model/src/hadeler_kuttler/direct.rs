@@ -59,7 +59,7 @@ pub fn equilibrium<const D: usize>(
     equilibrium_along(table, size, bed, &poured)
 }
 
-/// The equilibrium for a source that is split along the axes already (cells, x fastest), as [`super::Ground::source`] is.
+/// The equilibrium for a source that is split along the axes already (cells, x fastest), as [`super::Source`] is.
 pub fn equilibrium_along<const D: usize>(
     table: &Table<D>,
     size: [f64; D],

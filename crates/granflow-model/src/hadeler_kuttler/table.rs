@@ -1,7 +1,7 @@
 //! The table: the cells on which sand can lie, and the edges over which it falls or which hold it back.
 //!
 //! A table is a mask of cells. A face between a cell of the table and a cell beside it is an edge of the table, open or a
-//! wall. Nodes lie at the corners of the cells, node `index` at the lower left corner of cell `index`; the grid of the
+//! wall. Nodes are at the corners of the cells, node `index` at the lower left corner of cell `index`; the grid of the
 //! scheme therefore has one column and one row more than the table, which hold nodes only, and places are numbered on
 //! that grid, x fastest.
 
@@ -20,9 +20,9 @@ pub struct Edge<const D: usize> {
     pub axis: usize,
     /// The cell above it along that axis.
     pub index: [usize; D],
-    /// Which way it faces: `Left` if the table lies on its upper side.
+    /// Which way it faces: `Left` if the table is on its upper side.
     pub faces: Side,
-    /// A hole of the table lies beyond, not the outside.
+    /// A hole of the table is beyond, not the outside.
     pub hole: bool,
 }
 
@@ -167,7 +167,7 @@ impl<const D: usize> Table<D> {
     pub fn inside(&self, index: [usize; D]) -> bool {
         self.inside[self.place(index)]
     }
-    /// Does the cell lie in a hole of the table?
+    /// Is the cell in a hole of the table?
     pub fn hole(&self, index: [usize; D]) -> bool {
         self.hole[self.place(index)]
     }

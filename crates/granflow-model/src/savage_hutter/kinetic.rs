@@ -109,16 +109,16 @@ components!([const D: usize, R: Real] FaceStates<D, R> { h: R, u: [R; D], halves
 impl Kinetic {
     /// What a cell offers to its faces under a face depth.
     #[inline(always)]
-    fn edges<const D: usize, R: Real>(
+    fn face_states<const D: usize, R: Real>(
         depth: FaceDepth,
         Cell { state, ground, .. }: &Cell<Flow<D, R>, Chute<D, R>>,
-        prime: &[Density<R>; D],
+        primitives: &[Density<R>; D],
     ) -> FaceStates<D, R> {
         let own = depth == FaceDepth::Own;
         FaceStates {
             h: state.h,
-            u: per_axis!(k => prime[k].u),
-            halves: per_axis!(k => if own { prime[k].halves(state.h) } else { [Half::none(); 2] }),
+            u: per_axis!(k => primitives[k].u),
+            halves: per_axis!(k => if own { primitives[k].halves(state.h) } else { [Half::none(); 2] }),
             beta: ground.beta,
         }
     }
@@ -178,8 +178,8 @@ impl Kinetic {
         cells: [&Cell<Flow<D, R>, Chute<D, R>>; 2],
     ) -> Flow<D, R> {
         let u: [[R; D]; 2] = per_axis!(side => {
-            let prime: [Density<R>; D] = self.primitives(cells[side]);
-            per_axis!(k => prime[k].u)
+            let primitives: [Density<R>; D] = self.primitives(cells[side]);
+            per_axis!(k => primitives[k].u)
         });
         let mean = (cells[0].state.h + cells[1].state.h) * R::splat(0.5);
         let own = self.variant.resting == FaceDepth::Own;
@@ -246,9 +246,9 @@ impl<const D: usize, R: Real> Scheme<D, R> for Kinetic {
     fn reconstruct(
         &self,
         stencil: &impl Stencil<D, R, Flow<D, R>, Chute<D, R>>,
-        prime: &[Density<R>; D],
+        primitives: &[Density<R>; D],
     ) -> FaceStates<D, R> {
-        Self::edges(self.variant.moving, &stencil.at([0; D]), prime)
+        Self::face_states(self.variant.moving, &stencil.at([0; D]), primitives)
     }
 
     #[inline(always)]
@@ -262,7 +262,7 @@ impl<const D: usize, R: Real> Scheme<D, R> for Kinetic {
     fn update(
         &self,
         stencil: &impl Stencil<D, R, Flow<D, R>, Chute<D, R>>,
-        _edges: &FaceStates<D, R>,
+        _face_states: &FaceStates<D, R>,
         faces: &[Faces<Flow<D, R>>; D],
         _corners: &[[(); 2]; 2],
         dt: R,
@@ -351,7 +351,7 @@ impl<const D: usize, R: Real> Scheme<D, R> for Kinetic {
     fn is_nodata(&self, ground: &Chute<D, R>) -> R::Mask {
         ground.is_nodata()
     }
-    /// The flux of the moving depth; a resting edge cell of Verfahren 5 books the other one (erratum 5).
+    /// The flux of the moving depth; a resting edge cell of Verfahren 5 loses the other one (erratum 5).
     #[inline(always)]
     fn outflow(&self, flux: &Flow<D, R>, _side: Side) -> R {
         flux.h

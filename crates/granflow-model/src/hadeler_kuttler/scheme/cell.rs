@@ -72,7 +72,7 @@ impl SlopeStorage for Limited<true> {
     type CellSlopes<const D: usize, R: Real> = Halves<D, R>;
 }
 
-/// Where a cell and its lower left node lie. A number, so that a few can be asked at once: 0 is on the table, the node free
+/// Where a cell and its lower left node are. A number, so that a few can be asked at once: 0 is on the table, the node free
 /// to rise.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct CellClass<R> {

@@ -15,7 +15,7 @@ pub struct FaceStates<const D: usize, R: Real, P, T> {
     pub(super) slopes: [P; D],
     /// What the kinetic density sends through the lower and the upper face of each axis.
     pub(super) half: [[Half<R>; 2]; D],
-    /// The plane that the bed lies in.
+    /// The tangent plane of the bed.
     pub(super) plane: T,
     /// What the cell lets out.
     pub(super) class: CellClass<R>,

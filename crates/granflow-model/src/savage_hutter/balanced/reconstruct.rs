@@ -14,7 +14,7 @@ use crate::scheme::Neighbours;
 pub(super) type SlopesOf<const D: usize, R, const ORDER: u8> =
     <Order<ORDER> as SlopeStorage>::CellSlopes<D, R>;
 
-pub(super) type EdgesOf<const D: usize, R, B, const ORDER: u8> =
+pub(super) type FaceStatesOf<const D: usize, R, B, const ORDER: u8> =
     FaceStates<D, R, SlopesOf<D, R, ORDER>, <B as Bed<D, R>>::Plane>;
 
 impl<F: Friction, B: Copy, const ORDER: u8> Balanced<F, B, ORDER>
@@ -37,7 +37,7 @@ where
         near: &Neighbours<D, R, Flow<D, R>, B>,
         u: [R; D],
         axis: usize,
-        edges: &mut EdgesOf<D, R, B, ORDER>,
+        face_states: &mut FaceStatesOf<D, R, B, ORDER>,
     ) where
         B: Bed<D, R>,
     {
@@ -59,11 +59,11 @@ where
             du[axis] = R::select(wide, du[axis].min(most).max(-most), du[axis]);
         }
         let slopes = SlopesOf::<D, R, ORDER>::by(dh, du);
-        edges.slopes[axis] = slopes;
+        face_states.slopes[axis] = slopes;
         let depth = [slopes.depth(Towards::Lo, h), slopes.depth(Towards::Hi, h)];
         let velocity = [slopes.velocity(Towards::Lo, u)[axis], slopes.velocity(Towards::Hi, u)[axis]];
         let [lo, hi] = Density::ends(depth, velocity, beta);
         let (lo, hi) = (lo.halves(depth[0])[0], hi.halves(depth[1])[1]);
-        edges.half[axis] = [lo, hi];
+        face_states.half[axis] = [lo, hi];
     }
 }

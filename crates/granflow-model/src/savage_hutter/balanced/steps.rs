@@ -2,7 +2,7 @@
 
 use super::faces::{CellClass, FaceStates, Flux};
 use super::friction::Moved;
-use super::reconstruct::{EdgesOf, SlopesOf};
+use super::reconstruct::{FaceStatesOf, SlopesOf};
 use super::rest::StaticBalance;
 use super::slopes::{CellSlopes, Order, SlopeStorage};
 use super::variant::Balanced;
@@ -24,7 +24,7 @@ where
     type Ground = B;
     type Forcing = ();
     type Primitives = [Density<R>; D];
-    type FaceStates = EdgesOf<D, R, B, ORDER>;
+    type FaceStates = FaceStatesOf<D, R, B, ORDER>;
     type Flux = Flux<D, R>;
     type Corner = ();
 
@@ -60,14 +60,14 @@ where
     fn reconstruct(
         &self,
         stencil: &impl Stencil<D, R, Flow<D, R>, B>,
-        prime: &[Density<R>; D],
+        primitives: &[Density<R>; D],
     ) -> Self::FaceStates {
         let near = stencil.star();
         let Cell { state, ground, .. } = near.here;
         let per = near.spacing.inv;
-        let u: [R; D] = per_axis!(axis => prime[axis].u);
+        let u: [R; D] = per_axis!(axis => primitives[axis].u);
         let dry = self.is_dry(state.h, &ground);
-        let mut edges = FaceStates {
+        let mut face_states = FaceStates {
             h: state.h,
             u,
             slopes: [SlopesOf::<D, R, ORDER>::none(); D],
@@ -89,27 +89,27 @@ where
                     let most = bound * near.spacing.size[axis] * ground.stretch(axis);
                     held = held & static_balance.drop[axis].le(most);
                 });
-                edges.class = edges.class.held(held);
+                face_states.class = face_states.class.held(held);
                 closed = closed | held;
             }
             // A held cell and a dry one give nothing.
             if !R::any(!closed) {
-                return edges;
+                return face_states;
             }
         }
         for_axis!(axis in D => {
             if self.limited() {
-                self.limited_slopes(&near, u, axis, &mut edges);
+                self.limited_slopes(&near, u, axis, &mut face_states);
             } else {
-                edges.half[axis] = prime[axis].halves(state.h.positive_part());
+                face_states.half[axis] = primitives[axis].halves(state.h.positive_part());
             }
         });
         if R::any(closed) {
             for_axis!(axis in D => {
-                edges.half[axis] = per_axis!(side => edges.half[axis][side].only(!closed));
+                face_states.half[axis] = per_axis!(side => face_states.half[axis][side].only(!closed));
             });
         }
-        edges
+        face_states
     }
 
     #[inline(always)]
@@ -154,7 +154,7 @@ where
     fn update(
         &self,
         stencil: &impl Stencil<D, R, Flow<D, R>, B>,
-        edges: &Self::FaceStates,
+        face_states: &Self::FaceStates,
         faces: &[Faces<Flux<D, R>>; D],
         _corners: &[[(); 2]; 2],
         dt: R,
@@ -176,7 +176,7 @@ where
         let mut at_rest_or_dry = None;
         if !all_open {
             // What holds itself or is bare, and is not touched, stays: leave out the work.
-            let mut stays = !edges.class.is_open() & gone.equals(zero);
+            let mut stays = !face_states.class.is_open() & gone.equals(zero);
             for_axis!(k in D => {
                 stays = stays & lost[k].equals(zero) & q[k].equals(zero);
             });
@@ -203,7 +203,7 @@ where
         });
 
         let moved = Moved { h: new, depth, q: moved };
-        let slowed = self.slow(&bed, &state, moved, edges.u, per, dt);
+        let slowed = self.slow(&bed, &state, moved, face_states.u, per, dt);
         match at_rest_or_dry {
             None => Flow { h: new, q: slowed },
             Some(at_rest_or_dry) => Flow {

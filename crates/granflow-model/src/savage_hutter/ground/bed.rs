@@ -38,7 +38,7 @@ pub trait Bed<const D: usize, R: Real>: Components<R> {
     fn pressure_jump(&self, there: &Self, h: R, h_there: R) -> R;
     /// Acceleration -M (hi - lo)/(2 dx) of the rises towards both neighbours of each axis.
     fn driving_force(&self, lo: [R; D], hi: [R; D], per: [R; D]) -> [R; D];
-    /// What is left of the pull where the fluxes carry all pressure, if that is the same whatever lies around; then
+    /// The rest of the pull where the fluxes carry all pressure, if it is the same whatever the neighbours hold; then
     /// [`Bed::cross_force`] and [`Bed::curvature_force`] are 0.
     fn uniform_driving_force(&self) -> Option<[R; D]>;
     /// The part of [`Bed::driving_force`] that a pressure along the other axes makes (off the diagonal of M).

@@ -67,7 +67,7 @@ impl Terrain<2, f64> {
     }
 }
 
-/// By hand, for the curvature is kept as a triangle, and most of it in single precision.
+/// By hand: the curvature is kept as a triangle, and all but the level and gravity in single precision.
 impl<const D: usize, R: Real> Components<R> for Terrain<D, R> {
     const COUNT: usize = 3 + D + D * (D + 1) / 2;
     const UNIFORM_MASK: u32 = 1 << (Self::COUNT - 1);
