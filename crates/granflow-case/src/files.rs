@@ -5,6 +5,7 @@ use std::io;
 use std::path::Path;
 
 use super::fault::{CaseError, nearest};
+use super::output::FileKind;
 
 /// What reads the files that a case names: the disk, unless a method says otherwise.
 pub trait Files {
@@ -13,6 +14,11 @@ pub trait Files {
     /// # Errors
     /// What is wrong with the file, naming it.
     fn outlines(&self, path: &Path) -> Result<Box<dyn Outline>, String>;
+
+    /// The kinds of files that a case may ask for.
+    fn kinds(&self) -> &'static [FileKind] {
+        &[]
+    }
 
     /// Whether there is a file of this name.
     ///

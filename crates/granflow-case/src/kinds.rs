@@ -10,6 +10,7 @@ use serde::de::DeserializeOwned;
 use super::checked::Checked;
 use super::fault::CaseError;
 use super::look::Look;
+use super::output::FileKind;
 use super::source::{Missing, Source};
 
 pub mod avalanche;
@@ -194,9 +195,9 @@ fn strange<'a>(word: Option<&'a str>, other: &[&str], own: &[&str]) -> Option<&'
     word.filter(|word| other.contains(word) && !own.contains(word))
 }
 
-/// The JSON Schema of the case file: one of the kinds.
+/// The JSON Schema of the case file: one of the kinds of cases, with these kinds of files.
 #[must_use]
-pub fn json_schema() -> serde_json::Value {
+pub fn json_schema(files: &[FileKind]) -> serde_json::Value {
     let mut generator = SchemaGenerator::default();
     let kinds: Vec<Schema> = KINDS.iter().map(|kind| (kind.schema)(&mut generator)).collect();
     let dialect = generator.settings().meta_schema.clone();
@@ -204,6 +205,21 @@ pub fn json_schema() -> serde_json::Value {
         "$schema": dialect,
         "title": "granflow case",
         "anyOf": kinds,
-        "$defs": generator.take_definitions(true),
+        "$defs": with_files(generator.take_definitions(true), files),
     })
+}
+
+/// The definitions with the names that `output.files` may hold.
+fn with_files(
+    mut definitions: serde_json::Map<String, serde_json::Value>,
+    files: &[FileKind],
+) -> serde_json::Map<String, serde_json::Value> {
+    let name = |kind: &FileKind| serde_json::json!({ "const": kind.name, "description": kind.about });
+    let names: Vec<serde_json::Value> = files.iter().map(name).collect();
+    if let Some(items) =
+        definitions.get_mut("Output").and_then(|output| output.pointer_mut("/properties/files/items"))
+    {
+        *items = serde_json::json!({ "oneOf": names });
+    }
+    definitions
 }

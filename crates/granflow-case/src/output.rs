@@ -19,7 +19,7 @@ pub struct Output {
     pub steps: Option<u64>,
     /// Kinds of files (default: netcdf and figures; on terrain geotiff, vector and report as well).
     #[serde(skip_serializing_if = "Option::is_none")]
-    pub files: Option<Vec<FileKind>>,
+    pub files: Option<Vec<String>>,
     /// Precision of the numbers in the files (default f64 on a grid, f32 on terrain).
     #[serde(skip_serializing_if = "Option::is_none")]
     pub precision: Option<Precision>,
@@ -35,7 +35,7 @@ impl Output {
         &self,
         look: &Look,
         ends: &Ends,
-        files: &[FileKind],
+        files: &[&str],
         precision: Precision,
     ) -> Result<(Frames, Vec<FileKind>, Precision), CaseError> {
         if self.every.is_some() && self.steps.is_some() {
@@ -44,15 +44,6 @@ impl Output {
         }
         look.positive("output.every", self.every)?;
         look.not_zero("output.steps", self.steps)?;
-        for (index, kind) in self.files.iter().flatten().enumerate() {
-            if kind.needs_terrain() && !files.contains(kind) {
-                return Err(look.fault(
-                    &format!("output.files[{index}]"),
-                    format!("`{}` needs [terrain]", kind.as_str()),
-                    "on a grid: netcdf, csv, vtk, figures, animation",
-                ));
-            }
-        }
         let frames = match (self.every, self.steps, ends.time, ends.steps) {
             (Some(every), ..) => Frames::Every(every),
             (None, Some(steps), ..) => Frames::Steps(steps),
@@ -60,55 +51,48 @@ impl Output {
             (None, None, None, Some(steps)) => Frames::Steps(steps.div_ceil(u64::from(FRAMES)).max(1)),
             (None, None, None, None) => Frames::Ends,
         };
-        let files = self.files.clone().unwrap_or_else(|| files.to_vec());
+        let files = self.kinds(look, files)?;
         Ok((frames, files, self.precision.unwrap_or(precision)))
+    }
+
+    /// The kinds of files that are asked for; where the case does not say, those of `files` that can be written.
+    fn kinds(&self, look: &Look, files: &[&str]) -> Result<Vec<FileKind>, CaseError> {
+        let known = look.files.kinds();
+        let Some(asked) = &self.files else {
+            let named = |name: &&str| known.iter().find(|kind| kind.name == *name).copied();
+            return Ok(files.iter().filter_map(named).collect());
+        };
+        let find = |(index, name): (usize, &String)| {
+            let key = format!("output.files[{index}]");
+            let Some(kind) = known.iter().find(|kind| kind.name == name) else {
+                let message = format!("found `{name}`, which is not one of the choices");
+                return Err(look
+                    .source
+                    .fault(&key, message)
+                    .allowed(name, known.iter().map(|kind| kind.name)));
+            };
+            if kind.needs_terrain && !files.contains(&kind.name) {
+                let on_a_grid: Vec<&str> =
+                    known.iter().filter(|kind| !kind.needs_terrain).map(|kind| kind.name).collect();
+                let message = format!("`{name}` needs [terrain]");
+                return Err(look.fault(&key, message, &format!("on a grid: {}", on_a_grid.join(", "))));
+            }
+            Ok(*kind)
+        };
+        asked.iter().enumerate().map(find).collect()
     }
 }
 
 /// Files of a case on a grid that does not say which.
-pub(crate) const ON_A_GRID: &[FileKind] = &[FileKind::Netcdf, FileKind::Figures];
+pub(crate) const ON_A_GRID: &[&str] = &["netcdf", "figures"];
 
-/// A kind of output file.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
-#[serde(rename_all = "snake_case")]
-pub enum FileKind {
-    /// The fields over time: result.nc.
-    Netcdf,
-    /// The fields as tables.
-    Csv,
-    /// The fields for ParaView.
-    Vtk,
-    /// Summary maps, rasters/*.tif (terrain).
-    Geotiff,
-    /// Outlines of the deposit, outlines.geojson (terrain).
-    Vector,
-    /// Figures, figures/*.png.
-    Figures,
-    /// A film of the run.
-    Animation,
-    /// One page that shows it all, report.html (terrain).
-    Report,
-}
-
-impl FileKind {
+/// A kind of output file that a case may ask for, as the one who writes it describes it.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct FileKind {
     /// The name a case file writes.
-    #[must_use]
-    pub fn as_str(self) -> &'static str {
-        match self {
-            Self::Netcdf => "netcdf",
-            Self::Csv => "csv",
-            Self::Vtk => "vtk",
-            Self::Geotiff => "geotiff",
-            Self::Vector => "vector",
-            Self::Figures => "figures",
-            Self::Animation => "animation",
-            Self::Report => "report",
-        }
-    }
-
-    /// Whether the kind needs a raster with a place on the earth.
-    #[must_use]
-    pub fn needs_terrain(self) -> bool {
-        matches!(self, Self::Geotiff | Self::Vector | Self::Report)
-    }
+    pub name: &'static str,
+    /// What it is, for the schema.
+    pub about: &'static str,
+    /// It needs a raster with a place on the earth.
+    pub needs_terrain: bool,
 }

@@ -77,23 +77,12 @@ impl Field {
                 }
             });
         }
-        let doubles: Vec<DisjointSlice> =
-            self.doubles.iter_mut().map(|part| DisjointSlice::new(part)).collect();
-        let singles: Vec<DisjointSlice<f32>> =
-            self.singles.iter_mut().map(|part| DisjointSlice::new(part)).collect();
+        let writer = self.writer::<P>();
         parallel::for_each(layout.rows, |row| {
             for column in 0..layout.columns {
                 let place = layout.place(column as isize, row as isize);
-                value(column, row).store(|k, part| {
-                    // SAFETY: a row belongs to one thread.
-                    unsafe {
-                        if has(P::F32_MASK, k) {
-                            singles[k].slice(place..place + 1)[0] = part as f32;
-                        } else if !has(P::UNIFORM_MASK, k) {
-                            doubles[k].slice(place..place + 1)[0] = part;
-                        }
-                    }
-                });
+                // SAFETY: a row belongs to one thread.
+                unsafe { writer.replace(place, value(column, row)) };
             }
         });
     }
@@ -135,6 +124,14 @@ impl Field {
                 self.doubles[k][place] = part;
             }
         });
+    }
+    /// The values, for several threads that read and replace those of disjoint places.
+    pub(crate) fn writer<P: Components<f64>>(&mut self) -> Writer<'_, P> {
+        Writer {
+            doubles: self.doubles.iter_mut().map(|array| DisjointSlice::new(array)).collect(),
+            singles: self.singles.iter_mut().map(|array| DisjointSlice::new(array)).collect(),
+            values: PhantomData,
+        }
     }
     /// Are the values at some places the same bit for bit? Places come as the first ones of rows of `width`.
     pub(crate) fn is_uniform(&self, starts: impl Iterator<Item = usize> + Clone, width: usize) -> bool {
@@ -228,5 +225,50 @@ unsafe fn read<P: Components<f64>>(start: *const u8, k: usize, place: usize) -> 
         } else {
             *start.cast::<f64>().add(if has(P::UNIFORM_MASK, k) { 0 } else { place })
         }
+    }
+}
+
+/// The values of a field, written by several threads in disjoint places.
+pub(crate) struct Writer<'a, P> {
+    doubles: Vec<DisjointSlice<'a>>,
+    singles: Vec<DisjointSlice<'a, f32>>,
+    values: PhantomData<fn() -> P>,
+}
+
+impl<P: Components<f64>> Writer<'_, P> {
+    /// The value at `place`.
+    ///
+    /// # Safety
+    /// No other thread uses the place.
+    pub(crate) unsafe fn get(&self, place: usize) -> P {
+        // SAFETY: as the caller promises.
+        P::load(|k| unsafe {
+            if has(P::F32_MASK, k) {
+                f64::from(self.singles[k].slice(place..place + 1)[0])
+            } else {
+                let place = if has(P::UNIFORM_MASK, k) { 0 } else { place };
+                self.doubles[k].slice(place..place + 1)[0]
+            }
+        })
+    }
+    /// Set the value at `place`, but for the components that are the same in all cells; does a bit of it change?
+    ///
+    /// # Safety
+    /// No other thread uses the place.
+    pub(crate) unsafe fn replace(&self, place: usize, value: P) -> bool {
+        let mut changes = false;
+        // SAFETY: as the caller promises.
+        value.store(|k, component| unsafe {
+            if has(P::F32_MASK, k) {
+                let kept = &mut self.singles[k].slice(place..place + 1)[0];
+                changes |= kept.to_bits() != (component as f32).to_bits();
+                *kept = component as f32;
+            } else if !has(P::UNIFORM_MASK, k) {
+                let kept = &mut self.doubles[k].slice(place..place + 1)[0];
+                changes |= kept.to_bits() != component.to_bits();
+                *kept = component;
+            }
+        });
+        changes
     }
 }

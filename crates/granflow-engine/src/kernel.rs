@@ -10,12 +10,41 @@ pub trait Kernel<const D: usize>: Scheme<D, f64> {
     fn sweep(&self, sweep: &Sweep, output: Output);
 }
 
+/// The inner loops of a scheme in one number of dimensions, compiled by [`crate::kernel!`]: how a type of other crates, say
+/// `Balanced` with a friction law of your own, is stepped ([`crate::simulation::Simulation::with_loops`]).
+pub struct Loops<S>(fn(&S, &Sweep, Output));
+
+impl<S> Clone for Loops<S> {
+    fn clone(&self) -> Self {
+        *self
+    }
+}
+impl<S> Copy for Loops<S> {}
+
+impl<S> Loops<S> {
+    #[doc(hidden)]
+    pub const fn new(sweep: fn(&S, &Sweep, Output)) -> Self {
+        Loops(sweep)
+    }
+    /// Those of a scheme that has its own.
+    pub(crate) const fn of<const D: usize>() -> Self
+    where
+        S: Kernel<D>,
+    {
+        Loops(S::sweep)
+    }
+    pub(crate) fn sweep(self, scheme: &S, sweep: &Sweep, output: Output) {
+        (self.0)(scheme, sweep, output);
+    }
+}
+
 /// Compile the inner loops of a scheme, so that [`crate::simulation::Simulation`] can step it: once for each number of dimensions
 /// and for each set of instructions (none, AVX2, AVX-512, NEON), in a module of this name.
 ///
 /// ```ignore
 /// kernel!(burgers: Burgers);       // `Burgers` is `Scheme<D, R>` for any D and R
 /// kernel!(burgers: Burgers, 2);  // ... for D = 2 alone
+/// kernel!(mine: const LOOPS = Balanced<MyLaw, Chute<2, f64>>, 2);  // of a type that belongs to another crate: `Loops`
 /// ```
 ///
 /// Everything that a scheme does on lanes must be inlined whole: give its functions `#[inline(always)]`, and write loops over axes
@@ -23,6 +52,16 @@ pub trait Kernel<const D: usize>: Scheme<D, f64> {
 /// right, but slow. `crates/granflow-engine/tests/own_scheme.rs` has schemes of its own.
 #[macro_export]
 macro_rules! kernel {
+    ($module:ident: const $name:ident = $scheme:ty, $dimensions:literal) => {
+        #[doc(hidden)]
+        mod $module {
+            $crate::contexts!();
+        }
+        const $name: $crate::kernel::Loops<$scheme> =
+            $crate::kernel::Loops::new(|scheme, sweep: &$crate::private::Sweep, output| {
+                sweep.run::<$dimensions, _, $module::Here>(scheme, output);
+            });
+    };
     ($module:ident: $scheme:ty, $dimensions:literal) => {
         #[doc(hidden)]
         mod $module {

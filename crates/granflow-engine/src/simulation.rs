@@ -4,6 +4,7 @@ mod activity;
 mod advance;
 mod cells;
 mod error;
+mod forcing;
 mod ground;
 mod ledger;
 mod maps;

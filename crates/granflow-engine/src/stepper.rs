@@ -2,12 +2,11 @@
 
 use crate::field::Field;
 use crate::grid::Layout;
-use crate::kernel::Kernel;
 use crate::observe::Maps;
 use crate::simulation::{Failure, SimdLevel, Simulation, Totals, Traffic};
 use crate::tiles::OUTLETS;
 use crate::view::View;
-use granflow_model::scheme::Components;
+use granflow_model::scheme::{Components, Scheme};
 
 /// A [`Simulation`] whose scheme and dimension are not known to whoever steps it: `Box<dyn Stepper>`.
 ///
@@ -110,7 +109,7 @@ macro_rules! forward {
     };
 }
 
-impl<const D: usize, S: Kernel<D>> Stepper for Simulation<D, S> {
+impl<const D: usize, S: Scheme<D, f64>> Stepper for Simulation<D, S> {
     forward! {
         fn time(&self) -> f64;
         fn updates(&self) -> u64;

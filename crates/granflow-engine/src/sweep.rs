@@ -30,6 +30,7 @@ impl Sweep<'_> {
         // The inner loops trust these lengths.
         assert!(to.holds::<S::State>(&self.layout) && self.from.holds::<S::State>(&self.layout));
         assert!(self.grounds.holds::<S::Ground>(&self.layout));
+        assert!(self.forcings.holds::<S::Forcing>(&self.layout));
         assert!(maps.as_ref().is_none_or(|maps| maps.holds(&self.layout)));
         let mut arrays = to.arrays_mut();
         let targets = Targets {
@@ -77,6 +78,7 @@ impl<const D: usize, L: SimdVector, S: Scheme<D, f64>, I: SimdContext> SchemeVis
         const {
             strip::same::<L, S::State, T::State>();
             strip::same::<L, S::Ground, T::Ground>();
+            strip::same::<L, S::Forcing, T::Forcing>();
             assert!(S::TRACKS_CHANGE == T::TRACKS_CHANGE, "`with_scalar` gives another scheme");
         };
         let OnLanes { tiles: Tiles { sweep, targets, stats, changes, .. }, context } = self;

@@ -27,7 +27,7 @@ pub(crate) struct Tile {
     pub rows: [usize; 2],
     /// Its faces that lead out of the domain, as numbers in the list of all.
     pub outlets: Range<usize>,
-    /// The ground is the same in all cells that the tile sees.
+    /// Ground and forcing are the same in all cells that the tile sees.
     pub uniform: bool,
 }
 
@@ -86,6 +86,9 @@ pub(crate) struct Activity {
 }
 
 impl Activity {
+    /// In all cells.
+    pub const EVERYWHERE: Activity = Activity { anywhere: true, near: [[true; 2]; 2] };
+
     /// Here or there.
     pub fn or(self, other: Activity) -> Activity {
         let near = |axis: usize, side: usize| self.near[axis][side] | other.near[axis][side];

@@ -61,6 +61,7 @@ struct Upwind;
 impl<const D: usize, R: Real> Scheme<D, R> for Upwind {
     type State = Mixture<R>;
     type Ground = Wind<D, R>;
+    type Forcing = ();
     type Primitives = ();
     type FaceStates = Carried<D, R>;
     type Flux = Mixture<R>;
@@ -80,7 +81,7 @@ impl<const D: usize, R: Real> Scheme<D, R> for Upwind {
     fn primitives(&self, _here: &Cell<Mixture<R>, Wind<D, R>>) {}
     #[inline(always)]
     fn reconstruct(&self, stencil: &impl Stencil<D, R, Mixture<R>, Wind<D, R>>, _: &()) -> Carried<D, R> {
-        let Cell { state, ground } = stencil.at([0; D]);
+        let Cell { state, ground, .. } = stencil.at([0; D]);
         Carried { state, speed: ground.speed }
     }
     #[inline(always)]

@@ -39,7 +39,10 @@ fn views_are_the_state_and_a_restart_goes_on_as_the_run() {
     assert!(again.restore(&saved.0, saved.1));
     erased.advance(f64::INFINITY).unwrap();
     again.advance(f64::INFINITY).unwrap();
-    assert_eq!(again.arrays().components(), erased.arrays().components());
+    for k in 0..3 {
+        let rows = |run: &dyn Stepper| -> Vec<f64> { run.component(k).rows().flatten().copied().collect() };
+        assert_eq!(rows(&*again), rows(&*erased), "component {k}");
+    }
     assert_eq!((again.time(), again.outflow()), (erased.time(), erased.outflow()));
     assert!(erased.map_mut("nothing").is_none() && erased.map_mut("peak_speed").is_some());
     assert_eq!(erased.into_maps().len(), 4);

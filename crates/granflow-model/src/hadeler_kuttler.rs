@@ -15,7 +15,7 @@ pub mod exact;
 pub mod scheme;
 pub mod table;
 
-use crate::real::Real;
+use crate::real::{Real, for_axis};
 use crate::scheme::{Components, components};
 
 /// The unknowns of a cell: u at its node with the smallest coordinates, v in the cell.
@@ -27,15 +27,38 @@ pub struct Pile<R> {
     pub v: R,
 }
 
+/// What is poured on a cell: the source f \[u per time\], split along the axes by the transport ray, f_1 = f cos^2(theta),
+/// f_2 = f sin^2(theta) (eq. 47).
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Source<const D: usize, R> {
+    /// Its part along each axis.
+    pub split: [R; D],
+}
+components!([const D: usize, R: Real] Source<D, R> { split: [R; D] });
+
+impl<const D: usize, R: Real> Source<D, R> {
+    /// Nothing is poured.
+    #[inline(always)]
+    pub fn none() -> Self {
+        Source { split: [R::zero(); D] }
+    }
+    /// f.
+    #[inline(always)]
+    pub fn rate(&self) -> R {
+        let mut sum = R::zero();
+        for_axis!(axis in D => {
+            sum = sum + self.split[axis];
+        });
+        sum
+    }
+}
+
 /// What is fixed in a cell and at its lower left node.
 ///
 /// Nodes outnumber cells by one along each axis: the grid has one column and one row more than the table, which hold
 /// nodes only.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Ground<const D: usize, R> {
-    /// The source f \[u per time\], split along the axes by the transport ray: f_1 = f cos^2(theta), f_2 = f sin^2(theta)
-    /// (eq. 47).
-    pub source: [R; D],
     /// Height b of the table at the node.
     pub bed: R,
     /// 1 where the cell belongs to the table, else 0.
@@ -60,5 +83,5 @@ impl<const D: usize, R: Real> Ground<D, R> {
 components!([R: Real] Pile<R> { u: R, v: R });
 
 components!([const D: usize, R: Real] Ground<D, R> {
-    bed: R, inside: R, weight: R, hole: R, source: [R; D], wall: [R; D]
+    bed: R, inside: R, weight: R, hole: R, wall: [R; D]
 });

@@ -92,13 +92,15 @@ macro_rules! components {
 }
 pub use components;
 
-/// A cell's state and what is fixed there.
+/// A cell's state, its ground, and what acts on it.
 #[derive(Clone, Copy, Debug)]
-pub struct Cell<S, G> {
+pub struct Cell<S, G, F = ()> {
     /// The unknowns.
     pub state: S,
-    /// What does not change in time: slope, bed, coefficients.
+    /// Slope, bed, coefficients: nothing of it changes in time.
     pub ground: G,
+    /// Sources and whatever else comes from outside and may change between two steps.
+    pub forcing: F,
 }
 
 /// The distance of cell centres along each axis, and its reciprocal.
@@ -126,27 +128,27 @@ impl<const D: usize, R: Real> Spacing<D, R> {
 
 /// A cell and its neighbours along each axis.
 #[derive(Clone, Copy, Debug)]
-pub struct Neighbours<const D: usize, R, S, G> {
+pub struct Neighbours<const D: usize, R, S, G, F = ()> {
     /// The cell itself.
-    pub here: Cell<S, G>,
+    pub here: Cell<S, G, F>,
     /// The neighbour towards smaller coordinates, per axis.
-    pub lo: [Cell<S, G>; D],
+    pub lo: [Cell<S, G, F>; D],
     /// The neighbour towards larger coordinates, per axis.
-    pub hi: [Cell<S, G>; D],
+    pub hi: [Cell<S, G, F>; D],
     /// Cell sizes.
     pub spacing: Spacing<D, R>,
 }
 
 /// The neighbourhood of a cell, read where a scheme asks.
-pub trait Stencil<const D: usize, R: Real, S: Copy, G: Copy> {
+pub trait Stencil<const D: usize, R: Real, S: Copy, G: Copy, F: Copy = ()> {
     /// The cell `offset` cells away along each axis, at most [`REACH`].
-    fn at(&self, offset: [isize; D]) -> Cell<S, G>;
+    fn at(&self, offset: [isize; D]) -> Cell<S, G, F>;
     /// Cell sizes.
     fn spacing(&self) -> &Spacing<D, R>;
 
     /// The cell with its neighbours along each axis.
     #[inline(always)]
-    fn star(&self) -> Neighbours<D, R, S, G> {
+    fn star(&self) -> Neighbours<D, R, S, G, F> {
         let here = self.at([0; D]);
         let (mut lo, mut hi) = ([here; D], [here; D]);
         for_axis!(axis in D => {
@@ -203,6 +205,8 @@ pub trait Scheme<const D: usize, R: Real>: Copy + Send + Sync {
     type State: Components<R>;
     /// The static data of a cell.
     type Ground: Components<R>;
+    /// What acts on a cell from outside and may change between two steps: sources; `()` where there is none.
+    type Forcing: Components<R>;
     /// What follows from a cell alone.
     type Primitives: Copy;
     /// What a cell offers to its faces and remembers for its update.
@@ -227,15 +231,16 @@ pub trait Scheme<const D: usize, R: Real>: Copy + Send + Sync {
         0.9 * self.max_courant()
     }
 
-    /// Let `work` have the same scheme on another scalar: states and grounds of the same parts in the same order.
+    /// Let `work` have the same scheme on another scalar: states, grounds and forcings of the same
+    /// components in the same order.
     fn with_scalar<L: Real, V: SchemeVisitor<D, L>>(&self, visitor: V) -> V::Output;
 
     /// What follows from a cell alone: the place for divisions and roots, which are computed ahead of what waits for them.
-    fn primitives(&self, here: &Cell<Self::State, Self::Ground>) -> Self::Primitives;
+    fn primitives(&self, here: &Cell<Self::State, Self::Ground, Self::Forcing>) -> Self::Primitives;
     /// What the cell in the middle of the window offers to its faces and corners.
     fn reconstruct(
         &self,
-        stencil: &impl Stencil<D, R, Self::State, Self::Ground>,
+        stencil: &impl Stencil<D, R, Self::State, Self::Ground, Self::Forcing>,
         prime: &Self::Primitives,
     ) -> Self::FaceStates;
     /// What passes the face between `left` and `right` along `axis`.
@@ -247,7 +252,7 @@ pub trait Scheme<const D: usize, R: Real>: Copy + Send + Sync {
     /// left and right.
     fn update(
         &self,
-        stencil: &impl Stencil<D, R, Self::State, Self::Ground>,
+        stencil: &impl Stencil<D, R, Self::State, Self::Ground, Self::Forcing>,
         edges: &Self::FaceStates,
         faces: &[Faces<Self::Flux>; D],
         corners: &[[Self::Corner; 2]; 2],
@@ -258,13 +263,17 @@ pub trait Scheme<const D: usize, R: Real>: Copy + Send + Sync {
     fn mirror(&self, axis: usize, state: &Self::State) -> Self::State;
     /// The mirror image of a ground across a wall normal to `axis`.
     fn mirror_ground(&self, axis: usize, ground: &Self::Ground) -> Self::Ground;
+    /// The mirror image of a forcing across a wall normal to `axis`.
+    fn mirror_forcing(&self, _axis: usize, forcing: &Self::Forcing) -> Self::Forcing {
+        *forcing
+    }
     /// sum over axes of (fastest signal)/dx: the Courant condition is dt times this <= courant; finite in every finite state, for
     /// a run ends where it is not. \[1/time\]
-    fn rate(&self, here: &Cell<Self::State, Self::Ground>, spacing: &Spacing<D, R>) -> R;
+    fn rate(&self, here: &Cell<Self::State, Self::Ground, Self::Forcing>, spacing: &Spacing<D, R>) -> R;
     /// keep * old + (1 - keep) * new, without undoing an exact stop of `new`.
     fn rk_combine(&self, keep: R, old: &Self::State, new: &Self::State) -> Self::State;
     /// The cell rests by a proof of the scheme (or is dry): with neighbours at rest nothing will change here.
-    fn is_static(&self, here: &Cell<Self::State, Self::Ground>) -> R::Mask;
+    fn is_static(&self, here: &Cell<Self::State, Self::Ground, Self::Forcing>) -> R::Mask;
     /// The cell lies outside the data and holds nothing that is computed.
     fn is_nodata(&self, ground: &Self::Ground) -> R::Mask;
     /// Under which of the five exits the books put what passes from `here` to `there`, `way` being the one on that side;
@@ -273,16 +282,16 @@ pub trait Scheme<const D: usize, R: Real>: Copy + Send + Sync {
         R::any(self.is_nodata(there)).then_some(4)
     }
     /// Volume per time and area that is poured on a cell.
-    fn source_rate(&self, _ground: &Self::Ground) -> R {
+    fn source_rate(&self, _forcing: &Self::Forcing) -> R {
         R::zero()
     }
     /// Volume per time and face length that the cell on `side` books as leaving it to the other side.
     fn outflow(&self, flux: &Self::Flux, side: Side) -> R;
     /// Pull of the mass if it were at rest, as a share of the static bound: up to 1 it stays; 0 where dry and where
     /// nothing holds.
-    fn yield_ratio(&self, stencil: &impl Stencil<D, R, Self::State, Self::Ground>) -> R;
+    fn yield_ratio(&self, stencil: &impl Stencil<D, R, Self::State, Self::Ground, Self::Forcing>) -> R;
     /// What the run keeps watch of in a cell.
-    fn diagnostics(&self, here: &Cell<Self::State, Self::Ground>) -> Diagnostics<R>;
+    fn diagnostics(&self, here: &Cell<Self::State, Self::Ground, Self::Forcing>) -> Diagnostics<R>;
 }
 
 /// Work that is done with a scheme.

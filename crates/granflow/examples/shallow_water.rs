@@ -84,6 +84,7 @@ impl<const D: usize, R: Real> Scheme<D, R> for SaintVenant {
     type Primitives = [R; D];
     type FaceStates = Offer<D, R>;
     type Flux = Passing<D, R>;
+    type Forcing = ();
     type Corner = ();
 
     fn with_scalar<L: Real, V: SchemeVisitor<D, L>>(&self, visitor: V) -> V::Output {
@@ -101,7 +102,7 @@ impl<const D: usize, R: Real> Scheme<D, R> for SaintVenant {
     }
     #[inline(always)]
     fn reconstruct(&self, stencil: &impl Stencil<D, R, Water<D, R>, Bed<R>>, u: &[R; D]) -> Offer<D, R> {
-        let Cell { state, ground } = stencil.at([0; D]);
+        let Cell { state, ground, .. } = stencil.at([0; D]);
         Offer { h: state.h, u: *u, z: ground.z }
     }
     #[inline(always)]

@@ -1,6 +1,5 @@
 //! The case file of a run: what [`granflow_case`] reads, joined with the files of the world and the models.
 
-#[cfg(feature = "geo")]
 use crate::disk::Disk;
 use crate::registry;
 use crate::run::Run;
@@ -59,8 +58,6 @@ impl Case {
     /// # Errors
     /// [`CaseError`] for the first thing that is wrong; its kind is `File` where a file cannot be read.
     pub fn check(&self) -> Result<Checked, CaseError> {
-        #[cfg(not(feature = "geo"))]
-        use granflow_case::NoFiles as Disk;
         self.0.check(&Disk).map(Checked)
     }
 }
@@ -92,6 +89,13 @@ impl Checked {
         let granflow_case::Checked { run, kind } = self.0;
         registry::describe(&run, kind)
     }
+}
+
+/// The JSON Schema of the case file, with the kinds of files that can be written.
+#[cfg(feature = "files")]
+#[must_use]
+pub fn json_schema() -> serde_json::Value {
+    granflow_case::json_schema(Disk.kinds())
 }
 
 /// Why a run could not be set up.

@@ -8,7 +8,7 @@ pub type Line = (&'static str, String);
 /// What the case says, with its defaults; `material` stands after the model, `scheme` says the order and the parameters of
 /// the scheme.
 pub(crate) fn case(run: &RunPlan, material: Vec<Line>, scheme: &str) -> Vec<Line> {
-    let files: Vec<&str> = run.files.iter().map(|kind| kind.as_str()).collect();
+    let files: Vec<&str> = run.files.iter().map(|kind| kind.name).collect();
     let frames = match run.frames {
         Frames::Every(time) => format!("every {time} in time"),
         Frames::Steps(steps) => format!("every {steps} steps"),

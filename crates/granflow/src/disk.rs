@@ -1,7 +1,6 @@
-//! The files that a case names, read from the disk.
+//! The files that a case names, read from the disk, and the kinds that it may ask for.
 
-use crate::case::{Files, Outline};
-use crate::release::Outlines;
+use crate::case::{FileKind, Files, Outline};
 use std::path::Path;
 
 /// The disk: polygons are read as GeoJSON or shapefiles.
@@ -9,16 +8,34 @@ use std::path::Path;
 pub struct Disk;
 
 impl Files for Disk {
+    #[cfg(feature = "geo")]
     fn outlines(&self, path: &Path) -> Result<Box<dyn Outline>, String> {
-        let outlines = Outlines::read(path).map_err(|error| error.to_string())?;
+        let outlines = granflow_geo::release::Outlines::read(path).map_err(|error| error.to_string())?;
         Ok(Box::new(Polygons(outlines)))
+    }
+
+    #[cfg(not(feature = "geo"))]
+    fn outlines(&self, path: &Path) -> Result<Box<dyn Outline>, String> {
+        Err(format!("{}: polygons need granflow's feature `geo`", path.display()))
+    }
+
+    #[cfg(feature = "files")]
+    fn kinds(&self) -> &'static [FileKind] {
+        crate::results::formats::kinds()
+    }
+
+    #[cfg(not(feature = "files"))]
+    fn kinds(&self) -> &'static [FileKind] {
+        &[]
     }
 }
 
 /// The polygons of a file, as a case asks about them.
+#[cfg(feature = "geo")]
 #[derive(Debug)]
-struct Polygons(Outlines);
+struct Polygons(granflow_geo::release::Outlines);
 
+#[cfg(feature = "geo")]
 impl Outline for Polygons {
     fn holds(&self, place: [f64; 2]) -> bool {
         self.0.holds(place)

@@ -66,7 +66,6 @@
 pub mod build;
 pub mod case;
 pub mod describe;
-#[cfg(feature = "geo")]
 mod disk;
 pub mod model;
 pub mod models;
@@ -83,6 +82,7 @@ pub mod sinks;
 pub mod speed;
 
 pub use case::{Case, Checked, StartError};
+pub use disk::Disk;
 pub use granflow_engine::{grid, kernel, kernels, simulation};
 #[cfg(feature = "geo")]
 pub use granflow_geo::{raster, release, terrain};

@@ -5,11 +5,17 @@ mod animation;
 mod dataset;
 mod error;
 mod files;
+pub(crate) mod formats;
+mod netcdf;
 #[cfg(feature = "geo")]
 mod rasters;
 #[cfg(feature = "figures")]
+mod report;
+#[cfg(feature = "figures")]
 mod story;
 mod tables;
+#[cfg(feature = "geo")]
+mod vector;
 
 pub use crate::model::{Maps, Plane};
 pub use crate::output::summary::FILM_SHARE;

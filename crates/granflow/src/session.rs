@@ -1,7 +1,7 @@
 //! From a case to its files: what the program `granflow run` does, as a function.
 
 use crate::output;
-use crate::results::{FilesError, Finished};
+use crate::results::{FilesError, Finished, check_kinds};
 use crate::run::{DriveError, Failure, Run, drive};
 use crate::sinks::{BeginError, Callback, Files, Sink, Stop};
 use crate::{Checked, StartError};
@@ -88,6 +88,7 @@ impl Checked {
     ) -> Result<Finished, RunError> {
         let plan = self.plan().clone();
         let mut run = self.start()?;
+        check_kinds(&plan.files, run.plane())?;
         let begin = if *resume { Files::resume } else { Files::begin };
         let mut files = begin(directory, &plan, command, &mut *run)?.since(begun);
         let mut report = Callback(report);

@@ -19,7 +19,7 @@ use support::{Dice, ORDERS, Order, Surface, alone, grid, lost, plane, run, state
 
 /// A property of a scheme on a chute in D dimensions.
 trait Property<const D: usize> {
-    fn check<S: Kernel<D, State = Flow<D, f64>, Ground = Chute<D, f64>>>(
+    fn check<S: Kernel<D, State = Flow<D, f64>, Ground = Chute<D, f64>, Forcing = ()>>(
         &self,
         name: &str,
         scheme: impl Fn() -> S,
@@ -89,15 +89,17 @@ struct Consistency;
 
 impl Consistency {
     /// F(U, U) along `axis`, read off an update whose other faces lie between dry cells.
-    fn flux<const D: usize, S: Kernel<D, State = Flow<D, f64>, Ground: Bed<D, f64>>>(
+    fn flux<const D: usize, S: Kernel<D, State = Flow<D, f64>, Ground: Bed<D, f64>, Forcing = ()>>(
         scheme: &S,
         ground: S::Ground,
         state: Flow<D, f64>,
         axis: usize,
     ) -> Flow<D, f64> {
         let spacing = Spacing::new([1.0; D]);
-        let around = |state| Alike { here: Cell { state, ground }, spacing };
-        let edges = |state| scheme.reconstruct(&around(state), &scheme.primitives(&Cell { state, ground }));
+        let around = |state| Alike { here: Cell { state, ground, forcing: () }, spacing };
+        let edges = |state| {
+            scheme.reconstruct(&around(state), &scheme.primitives(&Cell { state, ground, forcing: () }))
+        };
         let (wet, dry) = (edges(state), edges(Flow::still(0.0)));
         let corners = [[scheme.corner([[&wet; 2]; 2]); 2]; 2];
         let idle: [Faces<S::Flux>; D] =
@@ -110,7 +112,7 @@ impl Consistency {
         Flow { h: (without.h - with.h) / dt, q: std::array::from_fn(|k| (without.q[k] - with.q[k]) / dt) }
     }
 
-    fn compare<const D: usize, S: Kernel<D, State = Flow<D, f64>, Ground: Bed<D, f64>>>(
+    fn compare<const D: usize, S: Kernel<D, State = Flow<D, f64>, Ground: Bed<D, f64>, Forcing = ()>>(
         name: &str,
         scheme: &S,
         ground: S::Ground,
@@ -135,7 +137,7 @@ impl Consistency {
 }
 
 impl<const D: usize> Property<D> for Consistency {
-    fn check<S: Kernel<D, State = Flow<D, f64>, Ground = Chute<D, f64>>>(
+    fn check<S: Kernel<D, State = Flow<D, f64>, Ground = Chute<D, f64>, Forcing = ()>>(
         &self,
         name: &str,
         scheme: impl Fn() -> S,
@@ -165,7 +167,7 @@ fn flux_of_equal_states_is_the_flux_of_the_equation() {
 struct Mirror(usize);
 
 impl<const D: usize> Property<D> for Mirror {
-    fn check<S: Kernel<D, State = Flow<D, f64>, Ground = Chute<D, f64>>>(
+    fn check<S: Kernel<D, State = Flow<D, f64>, Ground = Chute<D, f64>, Forcing = ()>>(
         &self,
         name: &str,
         scheme: impl Fn() -> S,
@@ -206,7 +208,7 @@ fn a_mirrored_run_is_the_mirror_image_to_the_last_bit() {
 struct Transpose;
 
 impl Property<2> for Transpose {
-    fn check<S: Kernel<2, State = Flow<2, f64>, Ground = Chute<2, f64>>>(
+    fn check<S: Kernel<2, State = Flow<2, f64>, Ground = Chute<2, f64>, Forcing = ()>>(
         &self,
         name: &str,
         scheme: impl Fn() -> S,
@@ -269,7 +271,7 @@ impl Embedded {
     fn pair<S, T>(&self, name: &str, one: S, two: T)
     where
         S: Kernel<1, State = Flow<1, f64>, Ground = Chute<1, f64>>,
-        T: Kernel<2, State = Flow<2, f64>, Ground = Chute<2, f64>>,
+        T: Kernel<2, State = Flow<2, f64>, Ground = Chute<2, f64>, Forcing = ()>,
     {
         let start = rough::<1>(13, stays_positive(name));
         let step = StepSize::Fixed(0.002);
@@ -487,7 +489,7 @@ fn schemes_of_the_mean_depth_lose_positivity_on_dry_ground() {
 struct Mass(Boundary);
 
 impl<const D: usize> Property<D> for Mass {
-    fn check<S: Kernel<D, State = Flow<D, f64>, Ground = Chute<D, f64>>>(
+    fn check<S: Kernel<D, State = Flow<D, f64>, Ground = Chute<D, f64>, Forcing = ()>>(
         &self,
         name: &str,
         scheme: impl Fn() -> S,

@@ -4,7 +4,7 @@ mod support;
 
 use granflow::grid::Grid;
 use granflow::hadeler_kuttler::scheme::{ADAPTIVE, FIRST_ORDER, HadelerKuttler, SECOND_ORDER, Slopes};
-use granflow::hadeler_kuttler::{Ground, Pile};
+use granflow::hadeler_kuttler::{Ground, Pile, Source};
 use granflow::kernels::Kernel;
 use granflow::savage_hutter::Flow;
 use granflow::savage_hutter::balanced::Balanced;
@@ -169,9 +169,6 @@ fn on_tables<const D: usize>(cells: [usize; D], waves: f64) {
         let inside = f64::from(u8::from(!beside && !hole));
         let free = (0..D).all(|k| index[k] > 0 && index[k] < last[k]) && !hole;
         Ground {
-            source: std::array::from_fn(|k| {
-                inside * if index[0] < cells[0] / 2 { 0.3 + 0.1 * k as f64 } else { 0.0 }
-            }),
             bed: waves * (0.7 * index[0] as f64).sin(),
             inside,
             weight: f64::from(u8::from(free)),
@@ -192,7 +189,15 @@ fn on_tables<const D: usize>(cells: [usize; D], waves: f64) {
         ("adaptive", ADAPTIVE),
         ("adaptive, 3", third),
     ] {
-        compare(name, || Simulation::new(scheme, table, StepSize::Courant(0.4), ground, start).unwrap());
+        compare(name, || {
+            let mut run = Simulation::new(scheme, table, StepSize::Courant(0.4), ground, start).unwrap();
+            run.apply(|index, _| Source {
+                split: std::array::from_fn(|k| {
+                    ground(index).inside * if index[0] < cells[0] / 2 { 0.3 + 0.1 * k as f64 } else { 0.0 }
+                }),
+            });
+            run
+        });
     }
 }
 

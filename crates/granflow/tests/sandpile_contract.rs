@@ -4,7 +4,7 @@ use granflow::grid::Grid;
 use granflow::hadeler_kuttler::direct::{Equilibrium, equilibrium, rays, surface};
 use granflow::hadeler_kuttler::scheme::{ADAPTIVE, FIRST_ORDER, HadelerKuttler, SECOND_ORDER, Slopes};
 use granflow::hadeler_kuttler::table::Table;
-use granflow::hadeler_kuttler::{Ground, Pile};
+use granflow::hadeler_kuttler::{Ground, Pile, Source};
 use granflow::scheme::Boundary;
 use granflow::simulation::{Failure, Simulation, StepSize};
 use proptest::prelude::*;
@@ -44,11 +44,12 @@ impl<const D: usize> Setting<D> {
     fn node(&self, index: [usize; D]) -> usize {
         (0..D).rev().fold(0, |n, k| n * self.table.nodes()[k] + index[k])
     }
-    fn ground(&self, index: [usize; D], factor: f64) -> Ground<D, f64> {
-        let source = self
-            .cell(index)
-            .map_or([0.0; D], |cell| self.shares[cell].map(|s| factor * s * self.rates[cell]));
-        self.table.ground(index, source, self.bed[self.node(index)])
+    fn ground(&self, index: [usize; D]) -> Ground<D, f64> {
+        self.table.ground(index, self.bed[self.node(index)])
+    }
+    fn source(&self, index: [usize; D]) -> Source<D, f64> {
+        let split = self.cell(index).map_or([0.0; D], |cell| self.shares[cell].map(|s| s * self.rates[cell]));
+        self.table.source(index, split)
     }
     fn run(&self, scheme: HadelerKuttler, step: StepSize, start: Option<&Equilibrium<D>>) -> Run<D> {
         let state = |index| match start {
@@ -63,7 +64,9 @@ impl<const D: usize> Setting<D> {
             size: self.size,
             boundary: [[Boundary::Absorbing; 2]; D],
         };
-        Simulation::new(scheme, grid, step, |index| self.ground(index, 1.0), state).unwrap()
+        let mut run = Simulation::new(scheme, grid, step, |index| self.ground(index), state).unwrap();
+        run.apply(|index, _| self.source(index));
+        run
     }
     fn courant(scheme: HadelerKuttler) -> StepSize {
         StepSize::Courant(if scheme.slopes == Slopes::None { 0.45 } else { 0.225 })
@@ -289,7 +292,7 @@ fn without_a_source_the_rolling_layer_dies_out_and_the_pile_stands() {
         run.advance(0.6).unwrap();
     }
     let poured = run.poured();
-    run.change_grounds(|index, _| setting.ground(index, 0.0));
+    run.apply(|_, _| Source::none());
     while run.time() < 60.0 {
         run.advance(60.0).unwrap();
     }

@@ -10,7 +10,7 @@ use super::{About, Foreign, Kind, Written};
 use crate::checked::{Checked, RunPlan};
 use crate::fault::CaseError;
 use crate::look::Look;
-use crate::output::{FileKind, Output};
+use crate::output::Output;
 use crate::precision::Precision;
 use crate::source::Missing;
 
@@ -190,8 +190,7 @@ fn order(look: &Look, scheme: SchemeName) -> Result<Order, CaseError> {
 }
 
 /// Files of a case that does not say which.
-const FILES: &[FileKind] =
-    &[FileKind::Netcdf, FileKind::Figures, FileKind::Geotiff, FileKind::Vector, FileKind::Report];
+const FILES: &[&str] = &["netcdf", "figures", "geotiff", "vector", "report"];
 
 /// Keys that not every model has.
 const KEYS: [&str; 6] = {

@@ -8,6 +8,10 @@ use std::path::{Path, PathBuf};
 struct Everywhere;
 
 impl Files for Everywhere {
+    fn kinds(&self) -> &'static [FileKind] {
+        super::Disk.kinds()
+    }
+
     fn outlines(&self, path: &Path) -> Result<Box<dyn Outline>, String> {
         Err(format!("{} holds no polygon", path.display()))
     }

@@ -4,11 +4,11 @@ use super::error::Failure;
 use super::state::Simulation;
 use crate::boundary;
 use crate::grid::GHOSTS;
-use crate::kernel::Kernel;
 use crate::sweep::{Output, Sweep, tracked};
 use crate::tiles::{OUTLETS, TileStats};
+use granflow_model::scheme::Scheme;
 
-impl<const D: usize, S: Kernel<D>> Simulation<D, S> {
+impl<const D: usize, S: Scheme<D, f64>> Simulation<D, S> {
     /// One step, not beyond time `until`; returns dt.
     ///
     /// # Errors
@@ -73,6 +73,7 @@ impl<const D: usize, S: Kernel<D>> Simulation<D, S> {
             layout: self.layout,
             size: [self.grid.size[0], self.grid.size[D - 1]],
             grounds: &self.grounds,
+            forcings: &self.forcings,
             from: &self.now,
             reach: GHOSTS * self.stages.len(),
             dt,
@@ -87,7 +88,7 @@ impl<const D: usize, S: Kernel<D>> Simulation<D, S> {
             stats: &mut self.found,
             changes: &mut self.found_changes,
         };
-        self.scheme.sweep(&sweep, output);
+        self.loops.sweep(&self.scheme, &sweep, output);
     }
 
     /// Keep what a sweep found under the numbers of its tiles.

@@ -11,10 +11,12 @@ struct Around<'a, const D: usize, S: Scheme<D, f64>> {
     place: usize,
 }
 
-impl<const D: usize, S: Scheme<D, f64>> Stencil<D, f64, S::State, S::Ground> for Around<'_, D, S> {
-    fn at(&self, offset: [isize; D]) -> Cell<S::State, S::Ground> {
+impl<const D: usize, S: Scheme<D, f64>> Stencil<D, f64, S::State, S::Ground, S::Forcing>
+    for Around<'_, D, S>
+{
+    fn at(&self, offset: [isize; D]) -> Cell<S::State, S::Ground, S::Forcing> {
         let place = self.simulation.layout.moved(self.place, offset);
-        Cell { state: self.simulation.now.get(place), ground: self.simulation.grounds.get(place) }
+        self.simulation.cell_at(place)
     }
     fn spacing(&self) -> &Spacing<D, f64> {
         &self.simulation.spacing
@@ -30,9 +32,26 @@ impl<const D: usize, S: Scheme<D, f64>> Simulation<D, S> {
     pub fn ground(&self, index: [usize; D]) -> S::Ground {
         self.grounds.get(self.place(index))
     }
-    /// Ground and state of a cell.
-    pub fn cell(&self, index: [usize; D]) -> Cell<S::State, S::Ground> {
-        Cell { state: self.state(index), ground: self.ground(index) }
+    /// State, ground and forcing of a cell.
+    pub fn cell(&self, index: [usize; D]) -> Cell<S::State, S::Ground, S::Forcing> {
+        self.cell_at(self.place(index))
+    }
+    fn cell_at(&self, place: usize) -> Cell<S::State, S::Ground, S::Forcing> {
+        Cell {
+            state: self.now.get(place),
+            ground: self.grounds.get(place),
+            forcing: self.forcings.get(place),
+        }
+    }
+    /// So many cells from `place` on.
+    pub(super) fn row(
+        &self,
+        place: usize,
+        len: usize,
+    ) -> impl Iterator<Item = Cell<S::State, S::Ground, S::Forcing>> {
+        let (states, grounds) = (self.now.row(place, len), self.grounds.row(place, len));
+        let forcings = self.forcings.row(place, len);
+        (0..len).map(move |i| Cell { state: states.get(i), ground: grounds.get(i), forcing: forcings.get(i) })
     }
     /// What the scheme watches in a cell.
     pub fn diagnostics(&self, index: [usize; D]) -> Diagnostics<f64> {
@@ -50,7 +69,7 @@ impl<const D: usize, S: Scheme<D, f64>> Simulation<D, S> {
         parallel::map(self.grid.count(), ratio)
     }
     /// What is made of every cell, x fastest.
-    pub fn collect<T>(&self, value: impl Fn(&Cell<S::State, S::Ground>) -> T) -> Vec<T> {
+    pub fn collect<T>(&self, value: impl Fn(&Cell<S::State, S::Ground, S::Forcing>) -> T) -> Vec<T> {
         (0..self.grid.count()).map(|number| value(&self.cell(self.grid.index(number)))).collect()
     }
     /// A value of as many cells as `values` holds, from number `from` on, x fastest, where every row is `columns` long: the
@@ -60,24 +79,24 @@ impl<const D: usize, S: Scheme<D, f64>> Simulation<D, S> {
         columns: usize,
         from: usize,
         values: &mut [f64],
-        value: impl Fn(&Cell<S::State, S::Ground>) -> f64,
+        value: impl Fn(&Cell<S::State, S::Ground, S::Forcing>) -> f64,
     ) {
         let (mut number, mut rest) = (from, values);
         while !rest.is_empty() {
             let (i, j) = (number % columns, number / columns);
             let (row, after) = rest.split_at_mut((columns - i).min(rest.len()));
             let place = self.layout.place(i as isize, j as isize);
-            let (states, grounds) = (self.now.row(place, row.len()), self.grounds.row(place, row.len()));
             number += row.len();
-            for (i, here) in row.iter_mut().enumerate() {
-                *here = value(&Cell { state: states.get(i), ground: grounds.get(i) });
+            let cells = self.row(place, row.len());
+            for (here, cell) in row.iter_mut().zip(cells) {
+                *here = value(&cell);
             }
             rest = after;
         }
     }
 
     /// A value of every cell, x fastest.
-    pub fn map(&self, value: impl Fn(&Cell<S::State, S::Ground>) -> f64 + Sync) -> Vec<f64> {
+    pub fn map(&self, value: impl Fn(&Cell<S::State, S::Ground, S::Forcing>) -> f64 + Sync) -> Vec<f64> {
         const AT_ONCE: usize = 1 << 14;
         let mut values = vec![0.0; self.grid.count()];
         parallel::for_each_chunk_mut(&mut values, AT_ONCE, |from, part| {

@@ -1,25 +1,13 @@
-//! What follows from the grounds: outlets, sources, tiles that see one ground only.
+//! What follows from the grounds: outlets, and tiles that see one ground only.
 
 use super::state::Simulation;
-use crate::boundary;
 use crate::grid::GHOSTS;
 use crate::tiles::{OutletFace, Tile};
-use granflow_model::real::CompensatedSum;
 use granflow_model::scheme::{Boundary, Components, Scheme};
 
 impl<const D: usize, S: Scheme<D, f64>> Simulation<D, S> {
-    /// Volume per time that the grounds pour in.
-    fn supplied(&self) -> f64 {
-        let mut sum = CompensatedSum::default();
-        for number in 0..self.grid.count() {
-            sum.add(self.scheme.source_rate(&self.ground(self.grid.index(number))));
-        }
-        sum.value() * self.grid.measure()
-    }
-
-    /// Note what follows from the grounds: the supply, the outlets, and where the ground is everywhere the same.
+    /// Note what follows from the grounds: the outlets, and which tiles see one ground only.
     pub(super) fn rebuild_ground_cache(&mut self) {
-        self.supply = self.supplied();
         self.outlets.clear();
         self.with_outlets.clear();
         for number in 0..self.tiles.len() {
@@ -30,8 +18,7 @@ impl<const D: usize, S: Scheme<D, f64>> Simulation<D, S> {
                     self.find_outlets([i, j]);
                 }
             }
-            // Of no use where a ground is kept in single precision: see `sweep::strip`.
-            let uniform = S::Ground::F32_MASK == 0 && self.is_uniform(columns, rows);
+            let uniform = self.is_uniform([columns, rows]);
             let tile = &mut self.tiles[number];
             (tile.outlets, tile.uniform) = (from..self.outlets.len(), uniform);
             if !tile.outlets.is_empty() {
@@ -40,12 +27,17 @@ impl<const D: usize, S: Scheme<D, f64>> Simulation<D, S> {
         }
     }
 
-    /// Is the ground the same bit for bit in the cells of a tile and all that they see?
-    fn is_uniform(&self, columns: [usize; 2], rows: [usize; 2]) -> bool {
+    /// Are ground and forcing the same bit for bit in the cells of a tile and all that they see? Not asked where they are kept in
+    /// single precision, for it is of no use there: see `sweep::strip`.
+    pub(super) fn is_uniform(&self, [columns, rows]: [[usize; 2]; 2]) -> bool {
+        if S::Ground::F32_MASK | S::Forcing::F32_MASK != 0 {
+            return false;
+        }
         let margin = self.layout.margin as isize;
         let start = |j: isize| self.layout.place(columns[0] as isize - GHOSTS as isize, j);
         let width = columns[1] - columns[0] + 2 * GHOSTS;
-        self.grounds.is_uniform((rows[0] as isize - margin..rows[1] as isize + margin).map(start), width)
+        let starts = (rows[0] as isize - margin..rows[1] as isize + margin).map(start);
+        self.grounds.is_uniform(starts.clone(), width) && self.forcings.is_uniform(starts, width)
     }
 
     /// Note the faces of a cell that lead out of the domain.
@@ -75,20 +67,5 @@ impl<const D: usize, S: Scheme<D, f64>> Simulation<D, S> {
                 }
             }
         }
-    }
-
-    /// Give every cell the ground that `change` makes of its index and its present one, and wake all.
-    pub fn change_grounds(&mut self, change: impl Fn([usize; D], S::Ground) -> S::Ground) {
-        for number in 0..self.grid.count() {
-            let index = self.grid.index(number);
-            let place = self.place(index);
-            let ground = self.grounds.get(place);
-            self.grounds.set(place, change(index, ground));
-        }
-        let (grid, layout, scheme) = (&self.grid, &self.layout, &self.scheme);
-        boundary::fill(&mut self.grounds, grid, layout, |axis, g| scheme.mirror_ground(axis, &g));
-        self.rebuild_ground_cache();
-        self.wake_all();
-        self.outdated.fill(true);
     }
 }

@@ -6,6 +6,7 @@ use super::totals::Totals;
 use crate::boundary;
 use crate::field::Field;
 use crate::grid::{Grid, Layout};
+use crate::kernel::{Kernel, Loops};
 use crate::lanes::SimdLevel;
 use crate::observe::Maps;
 use crate::sweep::tracked;
@@ -17,10 +18,12 @@ use granflow_model::time::Stages;
 /// The fields of a run, its clock and its ledger.
 pub struct Simulation<const D: usize, S: Scheme<D, f64>> {
     pub(super) scheme: S,
+    pub(super) loops: Loops<S>,
     pub(super) grid: Grid<D>,
     pub(super) layout: Layout,
     pub(super) spacing: Spacing<D, f64>,
     pub(super) grounds: Field,
+    pub(super) forcings: Field,
     pub(super) stages: Stages,
     pub(super) step_size: StepSize,
     pub(super) now: Field,
@@ -42,6 +45,9 @@ pub struct Simulation<const D: usize, S: Scheme<D, f64>> {
     /// Sums over the cells of each tile, per cell measure, and which of them are out of date.
     pub(super) sums: Vec<Totals>,
     pub(super) outdated: Vec<bool>,
+    /// The tiles with a source, and those whose forcing has just been changed.
+    pub(super) poured_on: Vec<bool>,
+    pub(super) forced: Vec<bool>,
     /// The largest rates and speeds by rows of tiles, and the largest changes.
     pub(super) row_max: Vec<TileRowMax>,
     pub(super) row_changes: Vec<f64>,
@@ -80,12 +86,29 @@ pub(super) struct TileRowMax {
     pub stale: bool,
 }
 
-impl<const D: usize, S: Scheme<D, f64>> Simulation<D, S> {
-    /// A run from the ground and the initial state of every cell, given by index per axis.
+impl<const D: usize, S: Kernel<D>> Simulation<D, S> {
+    /// A run from the ground and the initial state of every cell, given by index per axis; nothing is poured.
     ///
     /// # Errors
     /// [`BuildError`] for a grid without cells or whose cells have no size, and for a step that the scheme does not take.
     pub fn new(
+        scheme: S,
+        grid: Grid<D>,
+        step_size: StepSize,
+        ground: impl Fn([usize; D]) -> S::Ground + Sync,
+        initial: impl Fn([usize; D]) -> S::State + Sync,
+    ) -> Result<Self, BuildError> {
+        Self::with_loops(Loops::of::<D>(), scheme, grid, step_size, ground, initial)
+    }
+}
+
+impl<const D: usize, S: Scheme<D, f64>> Simulation<D, S> {
+    /// [`Simulation::new`] with inner loops that [`crate::kernel!`] made a constant of.
+    ///
+    /// # Errors
+    /// As [`Simulation::new`].
+    pub fn with_loops(
+        loops: Loops<S>,
         scheme: S,
         grid: Grid<D>,
         step_size: StepSize,
@@ -113,6 +136,8 @@ impl<const D: usize, S: Scheme<D, f64>> Simulation<D, S> {
             drift: vec![f64::INFINITY; <S::State as Components<f64>>::COUNT],
             sums: vec![Totals::default(); tiles.len()],
             outdated: vec![true; tiles.len()],
+            poured_on: vec![false; tiles.len()],
+            forced: vec![false; tiles.len()],
             row_max: vec![TileRowMax::default(); tiles.len() / across],
             rate: 0.0,
             with_outlets: Vec::new(),
@@ -123,6 +148,7 @@ impl<const D: usize, S: Scheme<D, f64>> Simulation<D, S> {
             queued: vec![false; tiles.len()],
             found: vec![TileStats::NONE; tiles.len()],
             grounds: bed,
+            forcings: Field::zeros::<S::Forcing>(&layout),
             maps: None,
             time: 0.0,
             step: 0,
@@ -132,6 +158,7 @@ impl<const D: usize, S: Scheme<D, f64>> Simulation<D, S> {
             poured: CompensatedSum::default(),
             last_dt: 0.0,
             stages: scheme.stages(),
+            loops,
             scheme,
             grid,
             layout,

@@ -59,14 +59,12 @@ impl<const D: usize, S: Scheme<D, f64>> Simulation<D, S> {
     }
 
     /// See the cells of a tile that lie inside the data.
-    pub(super) fn visit(&self, tile: &Tile, mut see: impl FnMut(&Cell<S::State, S::Ground>)) {
+    pub(super) fn visit(&self, tile: &Tile, mut see: impl FnMut(&Cell<S::State, S::Ground, S::Forcing>)) {
         let Tile { columns, rows, .. } = *tile;
         let width = columns[1] - columns[0];
         for j in rows[0]..rows[1] {
             let start = self.layout.place(columns[0] as isize, j as isize);
-            let (states, grounds) = (self.now.row(start, width), self.grounds.row(start, width));
-            for i in 0..width {
-                let cell = Cell { state: states.get(i), ground: grounds.get(i) };
+            for cell in self.row(start, width) {
                 if !self.scheme.is_nodata(&cell.ground) {
                     see(&cell);
                 }

@@ -10,7 +10,7 @@ use granflow_model::scheme::Scheme;
 /// Neighbours are taken to be in the cache already; the ground of tiles that see only one is not read at all.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Traffic {
-    /// Of the state and the ground that is read.
+    /// Of the state, the ground and the forcing that are read.
     pub read: f64,
     /// Of the state that is written.
     pub written: f64,
@@ -25,10 +25,15 @@ impl Traffic {
     }
 }
 
+/// Bytes of a cell that a step reads and does not write.
+const fn given<const D: usize, S: Scheme<D, f64>>() -> usize {
+    bytes_per_cell::<S::Ground>() + bytes_per_cell::<S::Forcing>()
+}
+
 impl<const D: usize, S: Scheme<D, f64>> Simulation<D, S> {
-    /// Bytes that a cell takes while a run computes: its state now and next, its ground, and the maps if they are kept.
+    /// Bytes that a cell takes while a run computes: its state now and next, its ground and forcing, and the maps if they are kept.
     pub fn bytes_per_cell(maps: bool) -> usize {
-        let fields = 2 * bytes_per_cell::<S::State>() + bytes_per_cell::<S::Ground>();
+        let fields = 2 * bytes_per_cell::<S::State>() + given::<D, S>();
         fields + if maps { Maps::BYTES_PER_CELL } else { 0 }
     }
     /// What a step asks of the memory where every tile is awake and no maps are kept.
@@ -39,7 +44,7 @@ impl<const D: usize, S: Scheme<D, f64>> Simulation<D, S> {
             let count = |[from, to]: [usize; 2]| to - from;
             tiles.map(|tile| count(tile.columns) * count(tile.rows)).sum::<usize>() as f64
         };
-        let ground = bytes_per_cell::<S::Ground>() as f64 * (1.0 - cells(true) / cells(false));
+        let ground = given::<D, S>() as f64 * (1.0 - cells(true) / cells(false));
         let mut traffic = Traffic { read: 0.0, written: 0.0, allocated: 0.0 };
         for rk_weight in self.stages {
             traffic.read += state + ground;

@@ -23,6 +23,8 @@ pub struct Sweep<'a> {
     pub(crate) size: [f64; 2],
     /// What does not change in time.
     pub(crate) grounds: &'a Field,
+    /// What acts on the cells in this step.
+    pub(crate) forcings: &'a Field,
     /// The state that the forward-Euler map is applied to.
     pub(crate) from: &'a Field,
     /// The faces that lead out of the domain.

@@ -46,16 +46,17 @@ pub(super) struct Targets<'a> {
     pub maps: Option<[DisjointSlice<'a, f32>; 4]>,
 }
 
-/// Tiles under way, on ground that is everywhere the same (`UNIFORM`) or not. All by value: a number behind a reference would
+/// Tiles under way, on ground and under a forcing that are everywhere the same (`UNIFORM`) or not. All by value: a number behind a reference would
 /// have to be read again after every number that the inner loop writes.
 struct Strip<'a, const D: usize, const UNIFORM: bool, L: SimdVector, T: Scheme<D, L>> {
     layout: Layout,
     scheme: T,
-    /// Where the arrays of the states and of the grounds begin.
+    /// Where the arrays of the states, the grounds and the forcings begin.
     from: [*const u8; MAX_COMPONENTS],
     grounds: [*const u8; MAX_COMPONENTS],
-    /// The ground where it is uniform, else of one of the cells.
-    uniform: T::Ground,
+    forcings: [*const u8; MAX_COMPONENTS],
+    /// Ground and forcing where they are uniform, else of one of the cells.
+    uniform: (T::Ground, T::Forcing),
     to: [*mut f64; MAX_COMPONENTS],
     maps: Option<&'a [DisjointSlice<'a, f32>; 4]>,
     outlets: &'a [OutletFace],
@@ -73,11 +74,11 @@ struct Around<'a, const D: usize, const UNIFORM: bool, L: SimdVector, T: Scheme<
     place: usize,
 }
 
-impl<const D: usize, const UNIFORM: bool, L: SimdVector, T: Scheme<D, L>> Stencil<D, L, T::State, T::Ground>
-    for Around<'_, D, UNIFORM, L, T>
+impl<const D: usize, const UNIFORM: bool, L: SimdVector, T: Scheme<D, L>>
+    Stencil<D, L, T::State, T::Ground, T::Forcing> for Around<'_, D, UNIFORM, L, T>
 {
     #[inline(always)]
-    fn at(&self, offset: [isize; D]) -> Cell<T::State, T::Ground> {
+    fn at(&self, offset: [isize; D]) -> Cell<T::State, T::Ground, T::Forcing> {
         for_axis!(axis in D => {
             assert!(offset[axis].unsigned_abs() <= REACH, "a cell beyond the reach of a stencil");
         });
@@ -108,9 +109,12 @@ pub(super) fn run<'a, 't, const D: usize, L: SimdVector, T: Scheme<D, L>, S: Sch
     found: (&mut [TileStats], &mut [f64]),
     memory: (&mut Scratch<D, L, T>, &mut TileReducer),
 ) {
-    // Mountains, which are kept in single precision, are seldom uniform, and one cell at a time is slow anyway: no loops are
-    // compiled for them.
-    if const { S::Ground::F32_MASK == 0 && L::WIDTH > 1 } && tiles.clone().all(|tile| tile.uniform) {
+    // Mountains, which are kept in single precision, are seldom uniform, the grounds of a line stay in the nearest cache, and one
+    // cell at a time is slow anyway: no loops are
+    // compiled for these.
+    if const { D > 1 && S::Ground::F32_MASK | S::Forcing::F32_MASK == 0 && L::WIDTH > 1 }
+        && tiles.clone().all(|tile| tile.uniform)
+    {
         let strip = Strip::<D, true, L, T>::new::<S>(sweep, scheme, tiles.clone(), targets);
         strip.sweep(tiles, across, found, memory);
     } else {
@@ -129,15 +133,6 @@ impl<'a, const D: usize, const UNIFORM: bool, L: SimdVector, T: Scheme<D, L>> St
     ) -> Self {
         let corner = tiles.next().map_or([0; 2], |tile| [tile.columns[0], tile.rows[0]]);
         let place = sweep.layout.place(corner[0] as isize, corner[1] as isize);
-        let mut ground = [0.0; MAX_COMPONENTS];
-        sweep.grounds.get::<S::Ground>(place).store(
-            #[inline(always)]
-            |k, component| ground[k] = component,
-        );
-        let uniform = T::Ground::load(
-            #[inline(always)]
-            |k| L::splat(ground[k]),
-        );
         let start =
             |array: &Option<DisjointSlice>| array.as_ref().map_or(std::ptr::null_mut(), |a| a.start());
         Strip {
@@ -145,7 +140,11 @@ impl<'a, const D: usize, const UNIFORM: bool, L: SimdVector, T: Scheme<D, L>> St
             scheme: *scheme,
             from: sweep.from.starts::<S::State>(),
             grounds: sweep.grounds.starts::<S::Ground>(),
-            uniform,
+            forcings: sweep.forcings.starts::<S::Forcing>(),
+            uniform: (
+                everywhere::<L, S::Ground, _>(sweep.grounds.get(place)),
+                everywhere::<L, S::Forcing, _>(sweep.forcings.get(place)),
+            ),
             to: targets.to.each_ref().map(start),
             maps: targets.maps.as_ref(),
             outlets: sweep.outlets,
@@ -158,44 +157,25 @@ impl<'a, const D: usize, const UNIFORM: bool, L: SimdVector, T: Scheme<D, L>> St
         }
     }
 
-    /// State and ground of the cells from `place` on.
+    /// The cells from `place` on.
     #[inline(always)]
-    fn cell(&self, place: usize) -> Cell<T::State, T::Ground> {
-        let state = T::State::load(
-            #[inline(always)]
-            |k| {
-                assert!(k < T::State::COUNT);
-                // SAFETY: `Sweep::run` found as many arrays of the length of the layout; the tiles and their ghosts are inside
-                // the layout, which ends with room for a vector.
-                unsafe { L::load(self.from[k].cast::<f64>().add(place)) }
-            },
-        );
-        Cell { state, ground: self.ground(place) }
+    fn cell(&self, place: usize) -> Cell<T::State, T::Ground, T::Forcing> {
+        // SAFETY: `Sweep::run` found as many arrays of the length of the layout; the tiles and their ghosts are inside the
+        // layout, which ends with room for a vector.
+        let state = unsafe { load::<L, T::State>(&self.from, place) };
+        Cell { state, ground: self.ground(place), forcing: self.forcing(place) }
     }
-
-    /// Ground of the cells from `place` on.
+    /// Their ground.
     #[inline(always)]
     fn ground(&self, place: usize) -> T::Ground {
-        if UNIFORM {
-            return self.uniform;
-        }
-        T::Ground::load(
-            #[inline(always)]
-            |k| {
-                assert!(k < T::Ground::COUNT);
-                let start = self.grounds[k];
-                // SAFETY: as in `cell`, in the precision of the component.
-                unsafe {
-                    if has(T::Ground::UNIFORM_MASK, k) {
-                        L::splat(*start.cast())
-                    } else if has(T::Ground::F32_MASK, k) {
-                        L::load_single(start.cast::<f32>().add(place))
-                    } else {
-                        L::load(start.cast::<f64>().add(place))
-                    }
-                }
-            },
-        )
+        // SAFETY: as in `cell`.
+        if UNIFORM { self.uniform.0 } else { unsafe { load::<L, T::Ground>(&self.grounds, place) } }
+    }
+    /// What acts on them.
+    #[inline(always)]
+    fn forcing(&self, place: usize) -> T::Forcing {
+        // SAFETY: as in `cell`.
+        if UNIFORM { self.uniform.1 } else { unsafe { load::<L, T::Forcing>(&self.forcings, place) } }
     }
 
     /// Ask for the numbers that will be read a row above `place` and written at it: the rows of a strip are too short for the
@@ -211,14 +191,8 @@ impl<'a, const D: usize, const UNIFORM: bool, L: SimdVector, T: Scheme<D, L>> St
                 prefetch(self.to[k].wrapping_add(place + m).cast());
             }
             if !UNIFORM {
-                for k in 0..T::Ground::COUNT {
-                    let start = self.grounds[k];
-                    if has(T::Ground::F32_MASK, k) {
-                        prefetch(start.cast::<f32>().wrapping_add(above + m).cast());
-                    } else if !has(T::Ground::UNIFORM_MASK, k) {
-                        prefetch(start.cast::<f64>().wrapping_add(above + m).cast());
-                    }
-                }
+                prefetch_components::<L, T::Ground>(&self.grounds, above + m);
+                prefetch_components::<L, T::Forcing>(&self.forcings, above + m);
             }
         }
     }
@@ -238,5 +212,56 @@ impl<'a, const D: usize, const UNIFORM: bool, L: SimdVector, T: Scheme<D, L>> St
     #[inline(always)]
     fn start(&self, columns: [usize; 2], j: isize) -> usize {
         self.layout.place(columns[0] as isize - 1, j)
+    }
+}
+
+/// The same value in all lanes.
+#[inline(always)]
+fn everywhere<L: SimdVector, S: Components<f64>, T: Components<L>>(value: S) -> T {
+    let mut components = [0.0; MAX_COMPONENTS];
+    value.store(
+        #[inline(always)]
+        |k, component| components[k] = component,
+    );
+    T::load(
+        #[inline(always)]
+        |k| L::splat(components[k]),
+    )
+}
+
+/// The values of the cells from `place` on.
+///
+/// # Safety
+/// `starts` are the arrays of a field of such values, which has the places of a vector from `place` on.
+#[inline(always)]
+unsafe fn load<L: SimdVector, P: Components<L>>(starts: &[*const u8; MAX_COMPONENTS], place: usize) -> P {
+    P::load(
+        #[inline(always)]
+        |k| {
+            assert!(k < P::COUNT);
+            let start = starts[k];
+            // SAFETY: as the caller promises, in the precision of the component.
+            unsafe {
+                if has(P::UNIFORM_MASK, k) {
+                    L::splat(*start.cast())
+                } else if has(P::F32_MASK, k) {
+                    L::load_single(start.cast::<f32>().add(place))
+                } else {
+                    L::load(start.cast::<f64>().add(place))
+                }
+            }
+        },
+    )
+}
+
+/// Ask for the values of the cells from `place` on.
+#[inline(always)]
+fn prefetch_components<L: SimdVector, P: Components<L>>(starts: &[*const u8; MAX_COMPONENTS], place: usize) {
+    for k in 0..P::COUNT {
+        if has(P::F32_MASK, k) {
+            prefetch(starts[k].cast::<f32>().wrapping_add(place).cast());
+        } else if !has(P::UNIFORM_MASK, k) {
+            prefetch(starts[k].cast::<f64>().wrapping_add(place).cast());
+        }
     }
 }

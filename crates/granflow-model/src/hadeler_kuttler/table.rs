@@ -8,7 +8,7 @@
 #[cfg(test)]
 mod tests;
 
-use super::Ground;
+use super::{Ground, Source};
 use crate::scheme::Side;
 use alloc::vec;
 use alloc::vec::Vec;
@@ -227,18 +227,24 @@ impl<const D: usize> Table<D> {
         pieces
     }
 
-    /// What the scheme needs to know of a cell and its node: the source split along the axes and the table's height.
-    pub fn ground(&self, index: [usize; D], source: [f64; D], bed: f64) -> Ground<D, f64> {
-        self.ground_at(self.place(index), source, bed)
+    /// What the scheme needs to know of a cell and its node, where the table has height `bed`.
+    pub fn ground(&self, index: [usize; D], bed: f64) -> Ground<D, f64> {
+        self.ground_at(self.place(index), bed)
+    }
+    /// The source of a cell, split along the axes; beside the table there is none.
+    pub fn source(&self, index: [usize; D], split: [f64; D]) -> Source<D, f64> {
+        self.source_at(self.place(index), split)
     }
     #[inline(always)]
-    pub(super) fn ground_at(&self, place: usize, source: [f64; D], bed: f64) -> Ground<D, f64> {
+    pub(super) fn source_at(&self, place: usize, split: [f64; D]) -> Source<D, f64> {
+        if self.inside[place] { Source { split } } else { Source::none() }
+    }
+    #[inline(always)]
+    pub(super) fn ground_at(&self, place: usize, bed: f64) -> Ground<D, f64> {
         let number = |yes: bool| if yes { 1.0 } else { 0.0 };
-        let inside = self.inside[place];
         Ground {
-            source: if inside { source } else { [0.0; D] },
             bed,
-            inside: number(inside),
+            inside: number(self.inside[place]),
             weight: self.weight[place],
             wall: self.wall[place].map(number),
             hole: number(self.hole[place]),

@@ -19,6 +19,7 @@ mod jump;
 mod riemann;
 mod slab;
 mod thacker;
+mod values;
 
 pub use cap::{CapMotion, CapRelease, ParabolicCap, SimilarityCap, SimilarityCapState};
 pub use dam_break::SlopeDamBreak;
@@ -27,111 +28,7 @@ pub use jump::GranularJump;
 pub use riemann::{Riemann, Wave};
 pub use slab::SlidingSlab;
 pub use thacker::{ThackerParaboloid, lake_depth};
-
-/// Depth and velocity of a flow in one dimension (m and m/s, or both scaled).
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Flow1 {
-    /// Depth h >= 0, normal to the bed.
-    pub h: f64,
-    /// Velocity along the bed; 0 where h = 0.
-    pub u: f64,
-}
-
-impl Flow1 {
-    /// No material.
-    pub const DRY: Self = Self { h: 0.0, u: 0.0 };
-
-    /// Discharge q = h u.
-    pub fn q(self) -> f64 {
-        self.h * self.u
-    }
-}
-
-/// Depth and velocity of a flow in two dimensions (m and m/s, or both scaled).
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Flow2 {
-    /// Depth h >= 0, normal to the bed.
-    pub h: f64,
-    /// Velocity along x; 0 where h = 0.
-    pub u: f64,
-    /// Velocity along y; 0 where h = 0.
-    pub v: f64,
-}
-
-impl Flow2 {
-    /// No material.
-    pub const DRY: Self = Self { h: 0.0, u: 0.0, v: 0.0 };
-}
-
-/// Why a solution cannot be set up.
-#[derive(Debug, Clone, PartialEq)]
-pub enum ExactError {
-    /// One parameter is outside the range where it has a meaning.
-    OutOfRange {
-        /// The parameter.
-        name: &'static str,
-        /// Its value.
-        found: f64,
-        /// The values that are allowed.
-        allowed: &'static str,
-    },
-    /// The parameters are fine one by one, but the formula does not solve the equations for them together.
-    NotValid {
-        /// The solution asked for.
-        solution: &'static str,
-        /// The condition that is broken.
-        requirement: &'static str,
-        /// Its left-hand side.
-        left: f64,
-        /// Its right-hand side.
-        right: f64,
-    },
-}
-
-impl core::fmt::Display for ExactError {
-    fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
-        match self {
-            Self::OutOfRange { name, found, allowed } => {
-                write!(f, "{name} = {found}, but it must be {allowed}")
-            }
-            Self::NotValid { solution, requirement, left, right } => write!(
-                f,
-                "{solution} does not hold here: {requirement} is needed, but {left} against {right} was given"
-            ),
-        }
-    }
-}
-
-impl core::error::Error for ExactError {}
-
-fn positive(name: &'static str, found: f64) -> Result<f64, ExactError> {
-    if found > 0.0 && found.is_finite() {
-        Ok(found)
-    } else {
-        Err(ExactError::OutOfRange { name, found, allowed: "positive and finite" })
-    }
-}
-
-fn not_negative(name: &'static str, found: f64) -> Result<f64, ExactError> {
-    if found >= 0.0 && found.is_finite() {
-        Ok(found)
-    } else {
-        Err(ExactError::OutOfRange { name, found, allowed: "0 or positive, and finite" })
-    }
-}
-
-fn finite(name: &'static str, found: f64) -> Result<f64, ExactError> {
-    if found.is_finite() { Ok(found) } else { Err(ExactError::OutOfRange { name, found, allowed: "finite" }) }
-}
-
-/// An angle of a bed or of friction.
-fn angle(name: &'static str, found: f64) -> Result<f64, ExactError> {
-    if (0.0..core::f64::consts::FRAC_PI_2).contains(&found) {
-        Ok(found)
-    } else {
-        Err(ExactError::OutOfRange { name, found, allowed: "from 0 to below pi/2 (radians)" })
-    }
-}
+pub use values::{ExactError, Flow1, Flow2};
 
 #[cfg(test)]
 mod tests {
@@ -159,11 +56,14 @@ mod tests {
 
     #[test]
     fn errors_name_the_parameter_and_the_range() {
-        let text = super::positive("height", -1.0).unwrap_err().to_string();
+        let text = super::values::positive("height", -1.0).unwrap_err().to_string();
         assert_eq!(text, "height = -1, but it must be positive and finite");
-        assert!(super::not_negative("depth", f64::NAN).is_err());
-        assert!(super::angle("slope", 1.6).is_err());
-        assert!(super::finite("velocity", f64::INFINITY).is_err());
-        assert!(matches!(super::angle("slope", -0.1), Err(ExactError::OutOfRange { name: "slope", .. })));
+        assert!(super::values::not_negative("depth", f64::NAN).is_err());
+        assert!(super::values::angle("slope", 1.6).is_err());
+        assert!(super::values::finite("velocity", f64::INFINITY).is_err());
+        assert!(matches!(
+            super::values::angle("slope", -0.1),
+            Err(ExactError::OutOfRange { name: "slope", .. })
+        ));
     }
 }

@@ -111,7 +111,7 @@ impl Kinetic {
     #[inline(always)]
     fn edges<const D: usize, R: Real>(
         depth: FaceDepth,
-        Cell { state, ground }: &Cell<Flow<D, R>, Chute<D, R>>,
+        Cell { state, ground, .. }: &Cell<Flow<D, R>, Chute<D, R>>,
         prime: &[Density<R>; D],
     ) -> FaceStates<D, R> {
         let own = depth == FaceDepth::Own;
@@ -131,16 +131,29 @@ impl Kinetic {
         left: &FaceStates<D, R>,
         right: &FaceStates<D, R>,
     ) -> Flow<D, R> {
-        let mean = (left.h + right.h) * R::splat(0.5);
-        let (out, back) = match depth {
-            FaceDepth::Own => (left.halves[axis][1], right.halves[axis][0]),
+        let halves = match depth {
+            FaceDepth::Own => [left.halves[axis][1], right.halves[axis][0]],
             FaceDepth::Mean => {
-                let out = Density::new(mean, mean * left.u[axis], left.beta);
-                let back = Density::new(mean, mean * right.u[axis], right.beta);
-                (out.halves(mean)[1], back.halves(mean)[0])
+                let mean = (left.h + right.h) * R::splat(0.5);
+                let momenta = [mean * left.u[axis], mean * right.u[axis]];
+                Self::halves_at([mean; 2], momenta, [left.beta, right.beta])
             }
         };
-        let mut q: [R; D] = per_axis!(k => out.mass * left.u[k] + back.mass * right.u[k]);
+        Self::sum(axis, halves, [left.u, right.u])
+    }
+
+    /// The two halves that meet at a face, at these depths and momenta.
+    #[inline(always)]
+    fn halves_at<R: Real>(h: [R; 2], q: [R; 2], beta: [R; 2]) -> [Half<R>; 2] {
+        let out = Density::new(h[0], q[0], beta[0]);
+        let back = Density::new(h[1], q[1], beta[1]);
+        [out.halves(h[0])[1], back.halves(h[1])[0]]
+    }
+
+    /// The flux of two halves, which carry the velocities of their cells.
+    #[inline(always)]
+    fn sum<const D: usize, R: Real>(axis: usize, [out, back]: [Half<R>; 2], u: [[R; D]; 2]) -> Flow<D, R> {
+        let mut q: [R; D] = per_axis!(k => out.mass * u[0][k] + back.mass * u[1][k]);
         q[axis] = q[axis] + (out.push + back.push);
         Flow { h: out.mass + back.mass, q }
     }
@@ -151,22 +164,34 @@ impl Kinetic {
         &self,
         near: &Neighbours<D, R, Flow<D, R>, Chute<D, R>>,
     ) -> [Faces<Flow<D, R>>; D] {
-        let here = Self::edges(self.variant.resting, &near.here, &self.primitives(&near.here));
-        per_axis!(axis => {
-            let (lo, hi) = (&near.lo[axis], &near.hi[axis]);
-            let lo = Self::edges(self.variant.resting, lo, &self.primitives(lo));
-            let hi = Self::edges(self.variant.resting, hi, &self.primitives(hi));
-            Faces {
-                lo: Self::through(self.variant.resting, axis, &lo, &here),
-                hi: Self::through(self.variant.resting, axis, &here, &hi),
-            }
+        per_axis!(axis => Faces {
+            lo: self.resting_face(axis, [&near.lo[axis], &near.here]),
+            hi: self.resting_face(axis, [&near.here, &near.hi[axis]]),
         })
+    }
+
+    /// What passes one face so. The depths are chosen before the one formula: it is long.
+    #[inline(always)]
+    fn resting_face<const D: usize, R: Real>(
+        &self,
+        axis: usize,
+        cells: [&Cell<Flow<D, R>, Chute<D, R>>; 2],
+    ) -> Flow<D, R> {
+        let u: [[R; D]; 2] = per_axis!(side => {
+            let prime: [Density<R>; D] = self.primitives(cells[side]);
+            per_axis!(k => prime[k].u)
+        });
+        let mean = (cells[0].state.h + cells[1].state.h) * R::splat(0.5);
+        let own = self.variant.resting == FaceDepth::Own;
+        let h = per_axis!(side => if own { cells[side].state.h } else { mean });
+        let q = per_axis!(side => if own { cells[side].state.q[axis] } else { mean * u[side][axis] });
+        Self::sum(axis, Self::halves_at(h, q, per_axis!(side => cells[side].ground.beta)), u)
     }
 
     /// beta D h - tilt per axis: the pull that friction must hold, as an acceleration.
     #[inline(always)]
     fn excess<const D: usize, R: Real>(near: &Neighbours<D, R, Flow<D, R>, Chute<D, R>>) -> [R; D] {
-        let Cell { state, ground } = near.here;
+        let Cell { state, ground, .. } = near.here;
         let (size, lo, hi) = (near.spacing.size, &near.lo, &near.hi);
         let rise_lo: [R; D] = per_axis!(k => ground.potential_jump(k, Towards::Lo, &lo[k].ground, state.h, lo[k].state.h, size[k]));
         let rise_hi: [R; D] = per_axis!(k => ground.potential_jump(k, Towards::Hi, &hi[k].ground, state.h, hi[k].state.h, size[k]));
@@ -192,6 +217,7 @@ fn divergence<const D: usize, R: Real>(faces: &[Faces<Flow<D, R>>; D], lambda: [
 impl<const D: usize, R: Real> Scheme<D, R> for Kinetic {
     type State = Flow<D, R>;
     type Ground = Chute<D, R>;
+    type Forcing = ();
     type Primitives = [Density<R>; D];
     type FaceStates = FaceStates<D, R>;
     /// Mass and momentum, with the face depth of a moving cell.
@@ -212,7 +238,7 @@ impl<const D: usize, R: Real> Scheme<D, R> for Kinetic {
     }
 
     #[inline(always)]
-    fn primitives(&self, Cell { state, ground }: &Cell<Flow<D, R>, Chute<D, R>>) -> [Density<R>; D] {
+    fn primitives(&self, Cell { state, ground, .. }: &Cell<Flow<D, R>, Chute<D, R>>) -> [Density<R>; D] {
         per_axis!(axis => Density::new(state.h, state.q[axis], ground.beta))
     }
 
@@ -242,7 +268,7 @@ impl<const D: usize, R: Real> Scheme<D, R> for Kinetic {
         dt: R,
     ) -> Flow<D, R> {
         let near = stencil.star();
-        let Cell { state: Flow { h, q }, ground } = near.here;
+        let Cell { state: Flow { h, q }, ground, .. } = near.here;
         let lambda: [R; D] = per_axis!(k => dt * near.spacing.inv[k]);
         let (zero, one) = (R::zero(), R::splat(1.0));
         let moving = divergence(faces, lambda);
@@ -332,7 +358,7 @@ impl<const D: usize, R: Real> Scheme<D, R> for Kinetic {
     }
     fn yield_ratio(&self, stencil: &impl Stencil<D, R, Flow<D, R>, Chute<D, R>>) -> R {
         let near = stencil.star();
-        let Cell { state, ground } = near.here;
+        let Cell { state, ground, .. } = near.here;
         let excess = Self::excess(&near);
         let bound = self.friction.resistance(state.h, R::zero(), ground.cos, ground.cos).holding;
         let none = state.h.le(R::zero()) | bound.le(R::zero());

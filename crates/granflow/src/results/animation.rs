@@ -1,6 +1,8 @@
 //! `animation.png`: the series over time as an animated PNG, which every browser shows.
 
+use super::formats::Format;
 use super::{FilesError, Finished, Story};
+use crate::case::FileKind;
 use crate::model::Scene;
 use crate::output;
 use crate::output::figures::{FigureError, Picture, PictureError};
@@ -9,6 +11,17 @@ use crate::output::whole_file;
 use rayon::prelude::*;
 use std::io::{self, Write};
 use std::path::PathBuf;
+
+/// The animation.
+pub(super) static ANIMATION: Format = Format {
+    kind: FileKind { name: "animation", about: "The run as an animated picture.", needs_terrain: false },
+    drawn: true,
+    after_figures: false,
+    write: |work| match &work.story {
+        Some(story) => Ok(vec![write(work.run, story)?]),
+        None => Ok(Vec::new()),
+    },
+};
 
 /// At most so many pictures; of more instants every n-th is shown.
 const PICTURES: usize = 120;
@@ -32,7 +45,7 @@ impl Reel {
 }
 
 /// Draw and write the animation of a run.
-pub(super) fn write(run: &Finished, story: &Story) -> Result<PathBuf, FilesError> {
+fn write(run: &Finished, story: &Story) -> Result<PathBuf, FilesError> {
     let path = run.directory.join("animation.png");
     let Some(pictures) = story.domain.model().pictures else { return Ok(path) };
     let frames = run.frames.again()?;

@@ -23,7 +23,7 @@ pub enum FilesError {
     #[error(transparent)]
     Raster(#[from] RasterError),
     /// This kind of file cannot be made.
-    #[error("output.files: {} cannot be written: {problem}, or take \"{}\" out of the list", kind.as_str(), kind.as_str())]
+    #[error("output.files: {} cannot be written: {problem}, or take \"{}\" out of the list", kind.name, kind.name)]
     Kind {
         /// The kind.
         kind: FileKind,

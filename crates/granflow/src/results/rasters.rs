@@ -1,14 +1,22 @@
 //! `rasters/*.tif`: the summary maps for a geographic information system.
 
 use super::Finished;
+use super::formats::Format;
+use crate::case::FileKind;
 use crate::model::{At, Kind, Quantity};
 use crate::raster::RasterError;
 use rayon::prelude::*;
 use std::path::PathBuf;
 
+/// Rasters for a geographic information system.
+pub(super) static GEOTIFF: Format = Format::of(
+    FileKind { name: "geotiff", about: "Summary maps, rasters/*.tif (terrain).", needs_terrain: true },
+    |work| Ok(write(work.run)?),
+);
+
 /// Write the maps of a run on a raster: nodata outside the elevation model, and for times where nothing came;
 /// thicknesses below the film are 0.
-pub(super) fn write(run: &Finished) -> Result<Vec<PathBuf>, RasterError> {
+fn write(run: &Finished) -> Result<Vec<PathBuf>, RasterError> {
     let Some(bed) = run.plane.domain.raster() else { return Ok(Vec::new()) };
     let folder = run.directory.join("rasters");
     std::fs::create_dir_all(&folder).map_err(|source| RasterError::Io { path: folder.clone(), source })?;

@@ -1,14 +1,27 @@
 //! The series and maps of a run as csv tables, and as frames for ParaView.
 
 use super::Finished;
+use super::formats::Format;
+use crate::case::FileKind;
 use crate::model::{At, Kind};
 use crate::output::{self, csv, vtk};
 use std::path::{Path, PathBuf};
 
+/// Tables.
+pub(super) static CSV: Format =
+    Format::of(FileKind { name: "csv", about: "The fields as tables.", needs_terrain: false }, |work| {
+        Ok(work.run.write_csv()?)
+    });
+/// ParaView.
+pub(super) static VTK: Format =
+    Format::of(FileKind { name: "vtk", about: "The fields for ParaView.", needs_terrain: false }, |work| {
+        Ok(work.run.write_vtk()?)
+    });
+
 impl Finished {
     /// `profiles.csv`: every instant of a line; `maps.csv`: the summary maps of a plane, a line per cell. Quantities at nodes
     /// go to `profiles_node.csv` and `maps_node.csv`.
-    pub(super) fn write_csv(&self) -> Result<Vec<PathBuf>, output::Error> {
+    fn write_csv(&self) -> Result<Vec<PathBuf>, output::Error> {
         let mut frames = self.frames.again()?;
         let mut written = Vec::new();
         let mut places = vec![("", self.plane.x.as_slice(), self.plane.y.as_slice())];
@@ -49,7 +62,7 @@ impl Finished {
     }
 
     /// `result.pvd` and `vtk/frame_0000.vti`, ...
-    pub(super) fn write_vtk(&self) -> Result<Vec<PathBuf>, output::Error> {
+    fn write_vtk(&self) -> Result<Vec<PathBuf>, output::Error> {
         let mut frames = self.frames.again()?;
         let spacing = |c: &[f64]| c.get(1).map(|second| second - c[0]);
         let (x, y) = (&self.plane.x, &self.plane.y);

@@ -4,14 +4,14 @@ use super::{Failure, FieldView, Maps, Record, Run, Saved, Totals};
 use crate::model::Plane;
 use granflow_engine::Stepper;
 use granflow_engine::grid::Layout;
-use granflow_engine::kernels::Kernel;
 use granflow_engine::simulation::Simulation;
 use granflow_model::scheme::{Cell, Scheme};
 use std::borrow::Cow;
 use std::time::{Duration, Instant};
 
 /// Ground and state of a cell of a scheme.
-pub type CellOf<const D: usize, S> = Cell<<S as Scheme<D, f64>>::State, <S as Scheme<D, f64>>::Ground>;
+pub type CellOf<const D: usize, S> =
+    Cell<<S as Scheme<D, f64>>::State, <S as Scheme<D, f64>>::Ground, <S as Scheme<D, f64>>::Forcing>;
 
 /// Where the numbers of a field come from.
 pub enum Value<const D: usize, S: Scheme<D, f64>> {
@@ -37,7 +37,7 @@ pub type Numbers = Vec<(String, f64)>;
 /// What a model adds to its scheme to be run and shown.
 pub trait Physics<const D: usize>: Send + Sync + 'static {
     /// The scheme.
-    type Scheme: Kernel<D>;
+    type Scheme: Scheme<D, f64>;
     /// Its name, as the case file writes it.
     fn scheme(&self) -> &str;
     /// The fields that a run shows.

@@ -55,21 +55,22 @@ impl<const D: usize> Setup<D> {
         let shares = rays(&self.table, self.size, &surface(&self.table, self.size, &self.bed));
         let cells = self.table.cells();
         let within = |index: [usize; D]| (0..D).all(|k| index[k] < cells[k]);
-        let ground = |index: [usize; D]| {
-            let source = if within(index) {
+        let ground = |index: [usize; D]| self.table.ground(index, self.bed[self.node(index)]);
+        let source = |index: [usize; D], _| {
+            let split = if within(index) {
                 let c = self.cell(index);
                 shares[c].map(|share| self.source[c] * share)
             } else {
                 [0.0; D]
             };
-            self.table.ground(index, source, self.bed[self.node(index)])
+            self.table.source(index, split)
         };
         let pile = |index: [usize; D]| Pile {
             u: state.u[self.node(index)],
             v: if within(index) { state.v[self.cell(index)] } else { 0.0 },
         };
         let step = StepSize::Courant(0.45);
-        Simulation::new(
+        let run = Simulation::new(
             FIRST_ORDER,
             Grid {
                 cells: self.table.nodes(),
@@ -80,8 +81,10 @@ impl<const D: usize> Setup<D> {
             step,
             ground,
             pile,
-        )
-        .unwrap()
+        );
+        let mut run = run.unwrap();
+        run.apply(source);
+        run
     }
     /// Largest change of u and of v in one step.
     pub fn one_step(&self) -> [f64; 2] {

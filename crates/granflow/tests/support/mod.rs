@@ -105,7 +105,10 @@ pub fn run<const D: usize, B: Bed<D, f64>>(
     grid: Grid<D>,
     grounds: &[B],
     start: impl Fn([f64; D], &B) -> Flow<D, f64> + Sync,
-) -> Run<D, B> {
+) -> Run<D, B>
+where
+    Balanced<Law, B>: Kernel<D, Ground = B, State = Flow<D, f64>>,
+{
     let number = |index: [usize; D]| index[0] + if D > 1 { index[D - 1] * grid.cells[0] } else { 0 };
     Simulation::new(
         order.scheme(mu, film),

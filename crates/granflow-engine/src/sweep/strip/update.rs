@@ -96,8 +96,9 @@ impl<const D: usize, const UNIFORM: bool, L: SimdVector, T: Scheme<D, L>> Strip<
             return;
         }
         let place = start + m;
-        // SAFETY: a vector of the row; the ground is that of the same cells.
-        let cell = Cell { state: unsafe { updated.get(m as isize) }, ground: self.ground(place) };
+        // SAFETY: a vector of the row.
+        let state = unsafe { updated.get(m as isize) };
+        let cell = Cell { state, ground: self.ground(place), forcing: self.forcing(place) };
         let watch = self.scheme.diagnostics(&cell);
         // Where a component of the state is no number the rate is infinite, as it is where one is.
         let mut rate = self.scheme.rate(&cell, &self.spacing);

@@ -6,8 +6,8 @@
 
 use super::super::scheme::{FIRST_ORDER, FaceStates};
 use super::super::table::Table;
-use super::super::{Ground, Pile};
-use super::Unsteady;
+use super::super::{Ground, Pile, Source};
+use super::unsteady::Unsteady;
 use crate::scheme::{Cell, Scheme, Spacing, Stencil};
 use alloc::vec;
 use alloc::vec::Vec;
@@ -29,18 +29,25 @@ struct Even<'a, const D: usize> {
     poured: bool,
 }
 
-impl<const D: usize> Stencil<D, f64, Pile<f64>, Ground<D, f64>> for Even<'_, D> {
+impl<const D: usize> Stencil<D, f64, Pile<f64>, Ground<D, f64>, Source<D, f64>> for Even<'_, D> {
     #[inline(always)]
-    fn at(&self, offset: [isize; D]) -> Cell<Pile<f64>, Ground<D, f64>> {
+    fn at(&self, offset: [isize; D]) -> Cell<Pile<f64>, Ground<D, f64>, Source<D, f64>> {
         let Slope { table, surface, source, .. } = self.slope;
         let step = (0..D).map(|k| offset[k] * table.step(k) as isize).sum();
         let place = self.place.wrapping_add_signed(step);
         let Some(&surface) = surface.get(place) else {
-            return Cell { state: Pile { u: 0.0, v: 0.0 }, ground: Ground::outside() };
+            return Cell {
+                state: Pile { u: 0.0, v: 0.0 },
+                ground: Ground::outside(),
+                forcing: Source::none(),
+            };
         };
         let source = if self.poured { source[place] } else { [0.0; D] };
-        let ground = table.ground_at(place, source, 0.0);
-        Cell { state: Pile { u: surface, v: self.v }, ground }
+        Cell {
+            state: Pile { u: surface, v: self.v },
+            ground: table.ground_at(place, 0.0),
+            forcing: table.source_at(place, source),
+        }
     }
     #[inline(always)]
     fn spacing(&self) -> &Spacing<D, f64> {

@@ -1,6 +1,6 @@
 //! Parabolic caps that slide down a plane and spread.
 
-use super::{ExactError, Flow1, Flow2, angle, positive};
+use super::values::{ExactError, Flow1, Flow2, angle, positive};
 
 /// A parabolic cap at rest on a plane, to be released at t = 0.
 #[derive(Debug, Clone, Copy, PartialEq)]

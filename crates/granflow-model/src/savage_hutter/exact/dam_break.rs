@@ -1,6 +1,6 @@
 //! Dam break on a slope that friction does not hold.
 
-use super::{ExactError, Flow1, angle, positive};
+use super::values::{ExactError, Flow1, angle, positive};
 
 /// Dam break on a slope that friction does not hold (`d <= z`), exact (Mangeney, Heinrich & Roche 2000, Pure Appl.
 /// Geophys. 157; Faccanoni & Mangeney 2013), SI units.

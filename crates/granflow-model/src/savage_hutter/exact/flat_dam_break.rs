@@ -1,6 +1,6 @@
 //! Dam break on a flat bed with Coulomb friction.
 
-use super::{ExactError, positive};
+use super::values::{ExactError, positive};
 use alloc::vec;
 
 /// Dam break on a flat bed with the friction coefficient mu (Kerswell 2005, Phys. Fluids 17, 057101), scaled by the

@@ -1,6 +1,6 @@
 //! The granular jump, a shock that travels with one speed.
 
-use super::{ExactError, Flow1, not_negative, positive};
+use super::values::{ExactError, Flow1, not_negative, positive};
 
 /// A jump between two uniform flows where friction just carries the slope (`tan d = tan z`), so that both sides
 /// keep their speed:

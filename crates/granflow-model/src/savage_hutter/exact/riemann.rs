@@ -1,6 +1,6 @@
 //! The Riemann problem without source.
 
-use super::{ExactError, Flow1, finite, not_negative, positive};
+use super::values::{ExactError, Flow1, finite, not_negative, positive};
 
 /// One of the two waves of a Riemann solution, by its speeds from left to right.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -199,7 +199,7 @@ mod tests {
         let m = r.middle().unwrap();
         assert!((m.h - 0.7269204461872865).abs() < 2e-16, "{m:?}");
         assert!((m.u - 0.18645257441665675).abs() < 2e-16, "{m:?}");
-        let Some(Wave::Shock { speed }) = r.right_wave() else { std::panic!("{r:?}") };
+        let Some(Wave::Shock { speed }) = r.right_wave() else { unreachable!("{r:?}") };
         assert!((speed - 0.5972850435692381).abs() < 1e-15, "{speed}");
         assert!((m.q() / (m.h - 0.5) - speed).abs() < 1e-15, "the printed formula");
         assert_eq!(

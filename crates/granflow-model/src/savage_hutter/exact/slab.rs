@@ -1,6 +1,6 @@
 //! A uniform slab that friction brings to rest.
 
-use super::{ExactError, angle, not_negative, positive};
+use super::values::{ExactError, angle, not_negative, positive};
 
 /// A slab of any uniform depth that slides down a plane with `tan d > tan z` from the speed `u0`:
 /// `u = max(0, u0 - G cos z (tan d - tan z) t)` and then exactly 0 (SI units).

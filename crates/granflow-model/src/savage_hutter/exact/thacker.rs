@@ -1,6 +1,6 @@
 //! Water without friction over a curved bed.
 
-use super::{ExactError, Flow2, finite, positive};
+use super::values::{ExactError, Flow2, finite, positive};
 
 /// Depth of a lake at rest with level `surface` over a bed of height `bed` (both in m): `max(surface - bed, 0)`, u = 0.
 ///

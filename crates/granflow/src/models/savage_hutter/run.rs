@@ -3,7 +3,7 @@
 pub mod avalanche;
 pub(crate) mod chute;
 pub(crate) mod describe;
-pub(crate) mod flowing;
+pub mod flowing;
 #[cfg(all(feature = "geo", feature = "threads"))]
 pub(crate) mod speed;
 #[cfg(feature = "geo")]

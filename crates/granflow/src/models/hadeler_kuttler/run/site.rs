@@ -4,7 +4,7 @@ use crate::grid::Grid;
 use crate::hadeler_kuttler::direct::{self, Equilibrium, Unsteady};
 use crate::hadeler_kuttler::scheme::HadelerKuttler;
 use crate::hadeler_kuttler::table::Table;
-use crate::hadeler_kuttler::{Ground, Pile};
+use crate::hadeler_kuttler::{Ground, Pile, Source};
 use crate::scheme::Boundary;
 use crate::simulation::{BuildError, Simulation, StepSize};
 
@@ -61,11 +61,16 @@ impl<const D: usize> Site<D> {
         (0..D).rev().fold(0, |sum, k| sum * nodes[k] + index[k])
     }
 
-    /// The ground of a cell under a source f (in the cells).
-    pub fn ground(&self, index: [usize; D], source: &[f64]) -> Ground<D, f64> {
+    /// The ground of a cell.
+    pub fn ground(&self, index: [usize; D]) -> Ground<D, f64> {
+        self.table.ground(index, self.bed[self.node(index)])
+    }
+
+    /// The part of a source f (in the cells) that is poured on a cell of the scheme's grid.
+    pub fn source(&self, index: [usize; D], source: &[f64]) -> Source<D, f64> {
         let split =
             self.cell(index).map_or([0.0; D], |cell| self.shares[cell].map(|share| share * source[cell]));
-        self.table.ground(index, split, self.bed[self.node(index)])
+        self.table.source(index, split)
     }
 
     /// A run under a source f (in the cells), from a standing layer (at the nodes) and a rolling layer (in the cells).
@@ -83,8 +88,9 @@ impl<const D: usize> Site<D> {
             let cell = self.cell(index).filter(|_| self.table.inside(index));
             Pile { u: standing[self.node(index)], v: cell.map_or(0.0, |cell| rolling[cell]) }
         };
-        let ground = |index| self.ground(index, source);
-        Simulation::new(scheme, self.grid(), step, ground, initial)
+        let mut simulation = Simulation::new(scheme, self.grid(), step, |index| self.ground(index), initial)?;
+        simulation.apply(|index, _| self.source(index, source));
+        Ok(simulation)
     }
 
     /// The equilibrium under a source f (in the cells).

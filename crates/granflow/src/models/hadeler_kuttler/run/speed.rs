@@ -3,7 +3,7 @@
 use crate::speed::{Begun, COURANT, Extent, Setup, grid};
 use granflow_engine::simulation::Simulation;
 use granflow_model::hadeler_kuttler::scheme::{ADAPTIVE, FIRST_ORDER, HadelerKuttler, SECOND_ORDER};
-use granflow_model::hadeler_kuttler::{Ground, Pile};
+use granflow_model::hadeler_kuttler::{Ground, Pile, Source};
 use granflow_model::scheme::Boundary;
 
 /// All of them.
@@ -38,7 +38,6 @@ fn on_table(scheme: HadelerKuttler, extent: Extent) -> Begun<2, HadelerKuttler> 
     let ground = |[i, j]: [usize; 2]| {
         let inside = i < last && j < last;
         Ground {
-            source: [0.25 * one(inside && extent.is_wet([i, j])); 2],
             bed: 0.0,
             inside: one(inside),
             weight: one(i > 0 && j > 0 && i < last && j < last),
@@ -51,9 +50,12 @@ fn on_table(scheme: HadelerKuttler, extent: Extent) -> Begun<2, HadelerKuttler> 
         let rolls = index.iter().all(|k| *k < last) && extent.is_wet(index);
         Pile { u: 0.5 * from_edge as f64 / extent.cells as f64, v: 0.1 * one(rolls) }
     };
+    let source = |[i, j]: [usize; 2], _| Source {
+        split: [0.25 * one(i < last && j < last && extent.is_wet([i, j])); 2],
+    };
     let sheet = grid::<2>(extent.cells, Boundary::Absorbing);
-    Begun::new(
-        Simulation::new(scheme, sheet, COURANT, ground, start).expect("a step that the scheme takes"),
-        extent.all(),
-    )
+    let run = Simulation::new(scheme, sheet, COURANT, ground, start);
+    let mut run = run.expect("a step that the scheme takes");
+    run.apply(source);
+    Begun::new(run, extent.all())
 }

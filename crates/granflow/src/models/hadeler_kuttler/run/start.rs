@@ -191,7 +191,7 @@ impl<const D: usize> Sand<D> {
     /// Pour as the sources do at `time`.
     pub fn pour(&self, simulation: &mut Simulation<D, HadelerKuttler>, time: f64) {
         let rates = self.rates(time);
-        simulation.change_grounds(|index, _| self.site.ground(index, &rates));
+        simulation.apply(|index, _| self.site.source(index, &rates));
     }
 
     /// The source f in every cell of the table, as it flows now.
@@ -199,7 +199,7 @@ impl<const D: usize> Sand<D> {
         let cells = simulation.grid().cells.map(|nodes| nodes - 1);
         let mut values = vec![0.0; cells.iter().product()];
         simulation.fill(cells[0], 0, &mut values, |cell: &CellOf<D, HadelerKuttler>| {
-            cell.ground.source.iter().sum()
+            cell.forcing.split.iter().sum()
         });
         values
     }
@@ -210,6 +210,7 @@ impl<const D: usize> Sand<D> {
         let (ground, state) = (|index| simulation.ground(index), |index| simulation.state(index));
         let step = Simulation::new(FIRST_ORDER, self.site.grid(), step, ground, state);
         let Ok(mut step) = step else { return [f64::NAN; 2] };
+        step.apply(|index, _| simulation.forcing(index));
         let done = step.advance(f64::INFINITY);
         let drift = step.drift();
         if done.is_ok() { [drift[0], drift[1]] } else { [f64::NAN; 2] }

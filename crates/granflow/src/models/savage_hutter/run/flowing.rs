@@ -1,14 +1,14 @@
 //! The Savage-Hutter equations as a run shows them: thickness and velocity, peaks and times.
 
 use crate::run::{CellOf, Field, Maps, Numbers, Physics, Record, Value};
-use granflow_engine::kernels::Kernel;
 use granflow_engine::simulation::Simulation;
 use granflow_model::savage_hutter::Flow;
 use granflow_model::savage_hutter::ground::Bed;
+use granflow_model::scheme::Scheme;
 use std::marker::PhantomData;
 
 /// A scheme for flowing mass, under the name by which a case asks for it.
-pub(crate) struct Flowing<S> {
+pub struct Flowing<S> {
     name: &'static str,
     film: f64,
     /// The bed has an elevation: surface and speed are shown too.
@@ -17,6 +17,7 @@ pub(crate) struct Flowing<S> {
 }
 
 impl<S> Flowing<S> {
+    /// Under this name; a thinner layer than `film` is held.
     pub fn new(name: &'static str, film: f64, on_terrain: bool) -> Self {
         Flowing { name, film, on_terrain, scheme: PhantomData }
     }
@@ -25,7 +26,7 @@ impl<S> Flowing<S> {
 /// Thickness normal to the bed.
 fn thickness<const D: usize, S>(cell: &CellOf<D, S>) -> f64
 where
-    S: Kernel<D, State = Flow<D, f64>>,
+    S: Scheme<D, f64, State = Flow<D, f64>>,
     S::Ground: Bed<D, f64>,
 {
     cell.ground.thickness(cell.state.h)
@@ -33,7 +34,7 @@ where
 
 impl<const D: usize, S> Physics<D> for Flowing<S>
 where
-    S: Kernel<D, State = Flow<D, f64>> + 'static,
+    S: Scheme<D, f64, State = Flow<D, f64>> + 'static,
     S::Ground: Bed<D, f64>,
 {
     type Scheme = S;
