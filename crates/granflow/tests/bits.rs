@@ -14,7 +14,7 @@ const FIELDS: [(&str, [&str; 2], [u32; 2]); 13] = [
     ("parabola", FLOW, [0x2970_08bd, 0x56ee_5715]),
     ("plane", FLOW, [0x97ff_1218, 0x5414_b045]),
     ("riemann", FLOW, [0xa57a_6f6f, 0x8dd2_874e]),
-    ("silo", FLOW, [0xf320_dd54, 0x5291_1250]),
+    ("silo", FLOW, [0xf320_dd54, 0x5292_1250]),
     ("sine", FLOW, [0x7cea_04fd, 0xd784_0f15]),
     ("sandpile_1d", PILE, [0xf303_6efd, 0xf579_71e8]),
     ("sandpile_l", PILE, [0xed04_9031, 0x501e_df89]),
