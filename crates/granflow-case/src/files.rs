@@ -47,7 +47,7 @@ pub trait Files {
     }
 }
 
-/// A part of the plane that polygons bound, with its rim; their holes are not of it.
+/// A part of the plane that polygons bound, with its rim and without their holes.
 pub trait Outline: Debug + Send + Sync {
     /// Whether a place belongs to it.
     fn holds(&self, place: [f64; 2]) -> bool;

@@ -52,7 +52,7 @@ pub(crate) trait Words: Debug + Send + Sync {
 pub(crate) trait Written:
     Debug + Send + Sync + Serialize + DeserializeOwned + JsonSchema + 'static
 {
-    /// What is said of the kind before its words are read.
+    /// What is known of the kind before its keys are read.
     const ABOUT: About;
     /// Checks and evaluates the case.
     fn check(&self, look: &Look) -> Result<Checked, CaseError>;
@@ -68,7 +68,7 @@ impl<W: Written> Words for W {
     }
 }
 
-/// What is said of a kind before its words are read.
+/// What is known of a kind before its keys are read.
 pub(crate) struct About {
     /// Name of the model.
     pub model: &'static str,

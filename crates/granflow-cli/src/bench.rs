@@ -23,7 +23,7 @@ const LEAST_CELLS: usize = 8;
 /// More threads than this only wait for each other.
 const MOST_THREADS: usize = 1024;
 /// No setup takes more for a cell: on terrain 32 of the ground and 8 of the elevation it comes from; the state now, next, at
-/// the start, and once more while a run begins anew, three numbers of 8 each; and what is kept of a tile.
+/// the start, and once more while a run restarts, three numbers of 8 each; and what is kept of a tile.
 const BYTES_PER_CELL: f64 = (32 + 8 + 4 * 24 + 2) as f64;
 
 /// What the command line says.

@@ -1,4 +1,4 @@
-//! The figures: every picture of a run or a paper, drawn to PNG without any help of the system.
+//! The figures: every picture of a run or a paper, drawn to PNG without fonts or graphics of the system.
 //!
 //! Each kind is a struct of plain slices and texts that implements [`Figure`]: [`Profiles`], [`HeatMap`] (a field over a
 //! plane or over space and time), [`Surface`], [`Map`], [`Section`], [`History`], [`Convergence`]. The typeface is compiled

@@ -49,7 +49,7 @@ pub struct Map<'a> {
     pub contours: bool,
     /// Shows only the box around field and outlines, widened on each side by this share of its greater side.
     pub crop: Option<f64>,
-    /// [`Map::mountain`] of this map, or of another of the same raster; worked out anew where that shows another box.
+    /// [`Map::mountain`] of this map, or of another of the same raster; found again where that shows another box.
     pub relief: Option<&'a Relief>,
 }
 

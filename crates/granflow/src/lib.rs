@@ -46,14 +46,14 @@
 //! | --- | --- |
 //! | [`build`] | runs without a case file, in a few lines |
 //! | [`case`], [`Case`] | the case file, from TOML to a checked case and its run |
-//! | [`run`] | a run one can hold: stepped, looked into, saved; the loop to an end; own models by [`run::Physics`] |
-//! | [`sinks`] | what looks on while a run goes: memory, files, a callback |
+//! | [`run`] | a run one can hold: stepped, looked into, saved; the loop to an end; models of your own by [`run::Physics`] |
+//! | [`sinks`] | what is shown a run after every step: memory, files, a callback |
 //! | [`session`] | from a checked case to its files, as `granflow run` does it |
 //! | [`model`], [`models`] | a model as files and figures see it; those of this library |
 //! | [`results`], [`output`] | what a run leaves; one file per format |
 //! | [`speed`] | what a step costs: runs to measure by, and what the memory can do |
 //! | [`scheme`], [`real`], [`limiter`], [`time`], [`savage_hutter`], [`hadeler_kuttler`] | from `granflow-model`: what the papers say, as pointwise functions |
-//! | [`grid`], [`kernels`], [`simulation`] | from `granflow-engine`: what steps a scheme |
+//! | [`grid`], [`mod@kernel`], [`kernels`], [`simulation`] | from `granflow-engine`: what steps a scheme |
 //! | [`raster`], [`terrain`], [`release`] | from `granflow-geo`: elevation, slopes and curvatures, what is released |
 //!
 //! The pages under `docs/` of the repository hold the equations, the schemes, the errata of the papers, the case file

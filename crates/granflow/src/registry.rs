@@ -1,4 +1,5 @@
-//! The models that a case can ask for: one line for each kind of case, nothing else knows them.
+//! Which model runs which kind of case. Outside its own folder a model is named here, in the list of models, and among the
+//! builders.
 
 use crate::StartError;
 use crate::describe::Line;

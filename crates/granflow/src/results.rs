@@ -54,9 +54,9 @@ pub struct Finished {
     /// Maps of the whole run and of its end, by the names of the model's quantities; x fastest, the first row in
     /// the south.
     pub maps: Maps,
-    /// A thinner layer is a film.
+    /// Thickness of a film.
     pub film: f64,
-    /// The figures of the run.
+    /// The run in numbers.
     pub summary: Summary,
 }
 

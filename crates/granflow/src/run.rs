@@ -44,7 +44,7 @@ pub trait Run: Send + Sync {
     fn record(&self) -> &Record;
     /// The mass has a speed along its bed; else the largest speed of the totals is another quantity of the model.
     fn has_speed(&self) -> bool;
-    /// A thinner layer is a film: it is held (units of the thickness).
+    /// Thickness of a film: a thinner layer is held (units of the thickness).
     fn film(&self) -> f64;
     /// Keep the kinetic energy after every step, for an end by energy.
     fn track_energy(&mut self);
@@ -53,7 +53,7 @@ pub trait Run: Send + Sync {
     /// infinite: the state is final.
     ///
     /// # Errors
-    /// [`Failure`]; after [`Failure::NotFinite`] the state is worth nothing, after the others nothing has been done.
+    /// [`Failure`]; after [`Failure::NotFinite`] the state is of no use, after the others it is as before.
     fn step(&mut self, until: f64) -> Result<f64, Failure>;
     /// Nothing changes faster than `rate` and no source will change any more, or the state is an equilibrium.
     fn is_steady(&self, rate: f64) -> bool;
@@ -78,7 +78,8 @@ pub trait Run: Send + Sync {
     fn maps(&mut self) -> Maps;
     /// The maps of peaks and times so far.
     fn peaks(&self) -> Maps;
-    /// The maps of peaks and times; each map is copied when all else and those before are given back.
+    /// The maps of peaks and times. The fields of the run are freed first, and the maps copied one by one, so that this takes
+    /// little memory.
     fn into_peaks(self: Box<Self>) -> Maps;
     /// The plane with the elevation of its bed.
     fn place(&self) -> Plane;

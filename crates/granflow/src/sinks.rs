@@ -1,4 +1,4 @@
-//! What looks on while a run goes: memory, files, a callback, a wish to end.
+//! What is shown a run after every step: memory, files, a callback, a flag that ends it.
 
 mod callback;
 #[cfg(feature = "files")]
@@ -28,11 +28,11 @@ impl SinkError {
 
 /// Something that is shown a run after every step of [`drive`](crate::run::drive).
 pub trait Sink {
-    /// The next instant at which it wants to see the run; infinite where any will do.
+    /// The next instant at which it must see the run; infinite where any will do.
     fn next_instant(&self) -> f64 {
         f64::INFINITY
     }
-    /// It wants the run to end.
+    /// It asks for the end of the run.
     fn wants_end(&self) -> bool {
         false
     }

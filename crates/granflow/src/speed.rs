@@ -29,9 +29,9 @@ pub trait Load: Send {
     /// # Errors
     /// [`Failure`] where the state is beyond what the scheme takes.
     fn step(&mut self) -> Result<(), Failure>;
-    /// Steps until it has moved on so far that cells come to rest, and it should begin anew.
+    /// Steps left before cells come to rest; then it should restart.
     fn steps_left(&self) -> usize;
-    /// Begin anew.
+    /// Go back to the first state.
     ///
     /// # Errors
     /// [`Failure`] where the state is beyond what the scheme takes.

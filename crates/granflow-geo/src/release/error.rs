@@ -137,7 +137,7 @@ pub enum ReleaseError {
         /// Why.
         problem: &'static str,
     },
-    /// A cap that cannot be.
+    /// A cap without height, without radius, or over no cell with a value.
     #[error("the cap releases nothing: {problem}")]
     Cap {
         /// Why, with what is allowed.

@@ -58,9 +58,9 @@ pub enum At {
 pub enum Kind {
     /// It is kept at every output instant.
     Series,
-    /// One map tells of the whole run or of its end.
+    /// One map for the whole run, or for its end.
     Map,
-    /// It is known before the run and stays.
+    /// It is known before the run and does not change.
     Fixed,
 }
 

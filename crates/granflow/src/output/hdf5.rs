@@ -3,7 +3,7 @@
 //!
 //! A dataset that was written without data has a contiguous layout message whose address is undefined (HDF5 File
 //! Format Specification 3.0, IV.A.2.i); here each gets address and size, and the checksums of its header
-//! (IV.A.1.b) and of the superblock (II.A), which holds the end of the file, are made anew.
+//! (IV.A.1.b) and of the superblock (II.A), which holds the end of the file, are computed again.
 
 use hdf5_core::jenkins_lookup3;
 

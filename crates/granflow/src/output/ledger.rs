@@ -41,7 +41,7 @@ fn header(exits: [&str; 5]) -> String {
     columns.join(",")
 }
 
-/// Is it a header, whatever its exits are called?
+/// Is it a header, whatever its outlets are called?
 fn is_header(line: &str) -> bool {
     let columns: Vec<&str> = line.split(',').collect();
     let fits = |(k, column): (usize, &&str)| {

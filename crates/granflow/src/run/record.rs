@@ -1,4 +1,4 @@
-//! What a run keeps in mind of its past.
+//! What a run remembers: the volume at the start, peaks, time spent in steps.
 
 use std::time::Duration;
 

@@ -6,7 +6,7 @@ use std::borrow::Cow;
 /// Everything that a run needs to go on bit for bit: see [`Run::save`](super::Run::save).
 #[derive(Clone, Debug, PartialEq)]
 pub struct Saved<'a> {
-    /// Time, steps and the ledger, as [`Stepper::clock`](granflow_engine::simulation::Stepper::clock) gives them.
+    /// Time, steps and the ledger, as [`Stepper::clock`](granflow_engine::Stepper::clock) gives them.
     pub clock: Vec<f64>,
     /// The components of the state, padded.
     pub state: Vec<Cow<'a, [f64]>>,

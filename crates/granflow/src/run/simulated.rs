@@ -9,7 +9,7 @@ use granflow_model::scheme::{Cell, Scheme};
 use std::borrow::Cow;
 use std::time::{Duration, Instant};
 
-/// Ground and state of a cell of a scheme.
+/// A cell of a scheme: its state, ground and forcing.
 pub type CellOf<const D: usize, S> =
     Cell<<S as Scheme<D, f64>>::State, <S as Scheme<D, f64>>::Ground, <S as Scheme<D, f64>>::Forcing>;
 
@@ -46,12 +46,11 @@ pub trait Physics<const D: usize>: Send + Sync + 'static {
     fn has_speed(&self) -> bool {
         true
     }
-    /// A thinner layer is a film: it is held.
+    /// Thickness of a film: a thinner layer is held.
     fn film(&self) -> f64 {
         0.0
     }
-    /// Change what is fixed in the cells (sources) before a step that ends at `until` at the latest; the time at which they
-    /// change again.
+    /// Set the forcing (sources) before a step that ends at `until` at the latest; returns the time at which it changes again.
     fn prepare(&mut self, _simulation: &mut Simulation<D, Self::Scheme>, _until: f64) -> f64 {
         f64::INFINITY
     }

@@ -33,7 +33,7 @@ pub enum BeginError {
     #[error("cannot start the threads: {0}")]
     Thread(String),
     /// The folder holds no checkpoint of this case.
-    #[error("cannot resume from {}: {problem}; run without --resume to start anew", directory.display())]
+    #[error("cannot resume from {}: {problem}; run without --resume to start again", directory.display())]
     Resume {
         /// The folder.
         directory: PathBuf,
@@ -140,7 +140,7 @@ impl Files {
         })
     }
 
-    /// Count the run as begun then: reading and setting up take their time too.
+    /// Count wall time from then on: reading and setting up take their time too.
     #[must_use]
     pub fn since(mut self, begun: Instant) -> Self {
         self.begun = begun;

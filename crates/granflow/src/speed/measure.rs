@@ -7,7 +7,7 @@ use std::time::{Duration, Instant};
 /// Steps that were timed together.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Spell {
-    /// How many.
+    /// Number of steps.
     pub steps: usize,
     /// Seconds on the clock.
     pub wall: f64,

@@ -10,15 +10,15 @@ pub(crate) const COURANT: StepSize = StepSize::Courant(0.4);
 
 /// A run to measure a scheme by.
 pub struct Setup {
-    /// What it is called: after its scheme.
+    /// Its name, that of its scheme.
     pub name: &'static str,
-    /// What it is.
+    /// What is computed, in words.
     pub about: &'static str,
-    /// How many.
+    /// Number of dimensions.
     pub dimensions: usize,
     /// May a part of it be dry? The published schemes lose positivity there, all but the first.
     pub dry: bool,
-    /// Makes it.
+    /// Makes the run.
     pub begin: fn(Extent) -> Box<dyn Load>,
 }
 

@@ -167,7 +167,7 @@ fn shape<const D: usize>(look: &Look, grid: &Grid, table: &TableWords) -> Result
 fn no_cells(look: &Look, table: &TableWords, cells: [usize; 2], dropped: usize) -> CaseError {
     if dropped > 0 {
         let message =
-            format!("the table is one cell wide everywhere: on none of its {dropped} cells can sand stand");
+            format!("the table is one cell wide everywhere: sand can stand on none of its {dropped} cells");
         return look.fault(
             "grid",
             message,

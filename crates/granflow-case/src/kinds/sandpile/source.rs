@@ -80,7 +80,7 @@ pub(super) struct Part {
     /// Numbers and centres of its cells on the table.
     pub cells: Vec<(usize, [f64; 2])>,
     rate: Law,
-    /// Share of its cells on the grid that are not of the table.
+    /// Share of its cells on the grid that lie off the table.
     pub lost: f64,
     /// Whether its region reaches beyond the grid.
     pub beyond: bool,

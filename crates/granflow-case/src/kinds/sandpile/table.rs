@@ -47,7 +47,7 @@ pub enum Edge {
     Bottom,
     /// It faces towards greater y.
     Top,
-    /// It faces an enclosed part of the grid that is not of the table.
+    /// It faces an enclosed part of the grid that is off the table.
     Hole,
 }
 
