@@ -2,11 +2,11 @@
 
 use std::path::Path;
 
-use super::files::Files;
+use super::files::FileAccess;
 use super::npy;
 
 /// Reads `[nx, ny]` cells, x fastest, from .npy (shape (nx) or (ny, nx)) or .csv (ny rows of nx numbers; one column will do if ny = 1).
-pub(crate) fn read(files: &dyn Files, path: &Path, [nx, ny]: [usize; 2]) -> Result<Vec<f64>, String> {
+pub(crate) fn read(files: &dyn FileAccess, path: &Path, [nx, ny]: [usize; 2]) -> Result<Vec<f64>, String> {
     let name = path.display();
     let bytes = files.bytes(path).map_err(|error| format!("cannot read {name}: {error}"))?;
     let (shape, values) =
@@ -61,7 +61,7 @@ mod tests {
     /// A folder with one file.
     struct One<'a>(&'a [u8]);
 
-    impl Files for One<'_> {
+    impl FileAccess for One<'_> {
         fn outlines(&self, _path: &Path) -> Result<Box<dyn Outline>, String> {
             Err("it holds no polygon".to_owned())
         }

@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use super::checked::Checked;
 use super::fault::CaseError;
-use super::files::{Files, read_case};
+use super::files::{FileAccess, read_case};
 use super::kinds::{self, Words};
 use super::look::Look;
 use super::source::Source;
@@ -56,8 +56,9 @@ impl Case {
     ///
     /// # Errors
     /// [`CaseError`] for the first thing that is wrong; its kind is `File` where a file cannot be read.
-    pub fn check(&self, files: &dyn Files) -> Result<Checked, CaseError> {
-        self.words.check(&Look { source: &self.source, files })
+    pub fn check(&self, files: &dyn FileAccess) -> Result<Checked, CaseError> {
+        let (run, kind) = self.words.check(&Look { source: &self.source, files })?;
+        Ok(Checked { run, kind })
     }
 
     /// The text of the case file, with the overrides as comment lines at the end.

@@ -4,11 +4,12 @@ use std::fmt::Debug;
 use std::io;
 use std::path::Path;
 
-use super::fault::{CaseError, nearest};
-use super::output::FileKind;
+use super::fault::CaseError;
+use super::file_kind::FileKind;
+use super::nearest::nearest;
 
 /// What reads the files that a case names: the disk, unless a method says otherwise.
-pub trait Files {
+pub trait FileAccess {
     /// The polygons of a file, as one part of the plane.
     ///
     /// # Errors
@@ -65,7 +66,7 @@ impl NoFiles {
     const REFUSED: &str = "files are not read here";
 }
 
-impl Files for NoFiles {
+impl FileAccess for NoFiles {
     fn outlines(&self, _path: &Path) -> Result<Box<dyn Outline>, String> {
         Err(Self::REFUSED.to_owned())
     }
@@ -86,7 +87,7 @@ impl Files for NoFiles {
 /// The disk, without a reader of polygons; it finds the case file itself.
 struct Disk;
 
-impl Files for Disk {
+impl FileAccess for Disk {
     fn outlines(&self, path: &Path) -> Result<Box<dyn Outline>, String> {
         NoFiles.outlines(path)
     }
@@ -107,7 +108,7 @@ pub(crate) fn read_case(path: &Path) -> Result<String, CaseError> {
 }
 
 /// Adds the nearest name to an error about a file that cannot be read.
-pub(crate) fn with_neighbour(error: CaseError, path: &Path, files: &dyn Files) -> CaseError {
+pub(crate) fn with_neighbour(error: CaseError, path: &Path, files: &dyn FileAccess) -> CaseError {
     let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
     let wanted = path.file_name().map(|name| name.to_string_lossy().into_owned()).unwrap_or_default();
     let Some(names) = files.names(folder) else {

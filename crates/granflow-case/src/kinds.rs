@@ -7,10 +7,10 @@ use schemars::{JsonSchema, Schema, SchemaGenerator};
 use serde::Serialize;
 use serde::de::DeserializeOwned;
 
-use super::checked::Checked;
 use super::fault::CaseError;
+use super::file_kind::FileKind;
 use super::look::Look;
-use super::output::FileKind;
+use super::plan::RunPlan;
 use super::source::{Missing, Source};
 
 pub mod avalanche;
@@ -43,7 +43,7 @@ kinds! {
 /// The words of a case, of any kind.
 pub(crate) trait Words: Debug + Send + Sync {
     /// Checks and evaluates the case.
-    fn check(&self, look: &Look) -> Result<Checked, CaseError>;
+    fn check(&self, look: &Look) -> Result<(RunPlan, Kind), CaseError>;
     /// The words as TOML.
     fn to_toml(&self) -> String;
 }
@@ -55,11 +55,11 @@ pub(crate) trait Written:
     /// What is known of the kind before its keys are read.
     const ABOUT: About;
     /// Checks and evaluates the case.
-    fn check(&self, look: &Look) -> Result<Checked, CaseError>;
+    fn check(&self, look: &Look) -> Result<(RunPlan, Kind), CaseError>;
 }
 
 impl<W: Written> Words for W {
-    fn check(&self, look: &Look) -> Result<Checked, CaseError> {
+    fn check(&self, look: &Look) -> Result<(RunPlan, Kind), CaseError> {
         Written::check(self, look)
     }
 

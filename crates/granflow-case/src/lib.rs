@@ -33,28 +33,34 @@ mod case;
 mod checked;
 mod choice;
 mod fault;
+mod file_kind;
 mod files;
 mod formula;
 mod grid;
 mod kinds;
 mod look;
+mod nearest;
 mod npy;
 mod output;
+mod plan;
 mod precision;
 mod quantity;
 mod region;
 mod source;
+mod stepping;
 mod units;
 
 pub use boundary::Side;
 pub use case::Case;
-pub use checked::{Checked, Ends, Frames, RunPlan, Stepping, Until};
-pub use fault::{CaseError, CaseErrorKind, nearest};
-pub use files::{Files, NoFiles, Outline};
+pub use checked::Checked;
+pub use fault::{CaseError, CaseErrorKind};
+pub use file_kind::FileKind;
+pub use files::{FileAccess, NoFiles, Outline};
 pub use formula::{Formula, FormulaError};
 pub use grid::{Axis, Grid, Points};
 pub use kinds::*;
-pub use output::FileKind;
+pub use nearest::nearest;
+pub use plan::{Ends, Frames, RunPlan, Stepping, Until};
 pub use precision::Precision;
 
 #[cfg(test)]

@@ -1,37 +1,15 @@
 //! The tools of a check: what a case says is looked at with its text at hand, so that each fault has its place.
 
-use super::checked::Stepping;
 use super::fault::{CaseError, PartFault};
-use super::files::{self, Files};
-use super::grid::Points;
-use super::quantity::Quantity;
+use super::files::{self, FileAccess};
 use super::source::Source;
-use granflow_model::scheme::Scheme;
 use std::path::{Path, PathBuf};
 
 /// The text of a case and the files it may name.
 #[derive(Clone, Copy)]
 pub(crate) struct Look<'a> {
     pub source: &'a Source,
-    pub files: &'a dyn Files,
-}
-
-/// What a scheme says about its time step.
-#[derive(Debug, Clone, Copy)]
-pub(crate) struct StepLimits {
-    /// Name of the scheme.
-    pub scheme: &'static str,
-    /// Largest Courant number.
-    pub max_courant: f64,
-    /// Courant number where the case does not say.
-    pub suggested: f64,
-}
-
-impl StepLimits {
-    /// The limits that the scheme of this name states itself.
-    pub fn of<S: Scheme<1, f64>>(name: &'static str, scheme: &S) -> Self {
-        Self { scheme: name, max_courant: scheme.max_courant(), suggested: scheme.suggested_courant() }
-    }
+    pub files: &'a dyn FileAccess,
 }
 
 impl Look<'_> {
@@ -90,67 +68,5 @@ impl Look<'_> {
         let Err(error) = self.files.find(&found) else { return Ok(()) };
         let fault = self.source.fault(key, format!("cannot read {}: {error}", found.display())).file();
         Err(files::with_neighbour(fault, &found, self.files))
-    }
-
-    /// The time step of `[scheme]`: a fixed one, or a Courant number within the limits of the scheme.
-    pub fn stepping(
-        &self,
-        step: Option<f64>,
-        courant: Option<f64>,
-        limits: StepLimits,
-    ) -> Result<Stepping, CaseError> {
-        let StepLimits { scheme, max_courant, suggested } = limits;
-        self.positive("scheme.step", step)?;
-        match (step, courant) {
-            (Some(_), Some(_)) => Err(self.fault(
-                "scheme.courant",
-                "both `step` and `courant` are given",
-                "keep step for a fixed step, courant for an adaptive one",
-            )),
-            (Some(step), None) => Ok(Stepping::Fixed(step)),
-            (None, Some(courant)) => {
-                let allowed = format!("a number > 0 and <= {max_courant} for {scheme}");
-                self.number("scheme.courant", courant, |v| v > 0.0 && v <= max_courant, &allowed)?;
-                Ok(Stepping::Courant(courant))
-            }
-            (None, None) => Ok(Stepping::Courant(suggested)),
-        }
-    }
-
-    /// A quantity at all points, 0 where the case does not say; every value is finite.
-    pub fn evaluate(
-        &self,
-        points: &Points,
-        key: &str,
-        quantity: Option<&Quantity>,
-    ) -> Result<Vec<f64>, CaseError> {
-        let quantity = quantity.unwrap_or(&Quantity::Constant(0.0));
-        let values = quantity.on(points, self).map_err(|fault| self.part_fault(key, fault))?;
-        match values.iter().position(|value| !value.is_finite()) {
-            None => Ok(values),
-            Some(index) => Err(self
-                .source
-                .fault(key, format!("the value is {} at {}", values[index], points.place(index)))
-                .help("every cell needs a finite number")),
-        }
-    }
-
-    /// A quantity that is never negative.
-    pub fn layer(
-        &self,
-        points: &Points,
-        key: &str,
-        quantity: Option<&Quantity>,
-    ) -> Result<Vec<f64>, CaseError> {
-        let values = self.evaluate(points, key, quantity)?;
-        match values.iter().position(|value| *value < 0.0) {
-            None => Ok(values),
-            Some(index) => {
-                let name = key.rsplit('.').next().unwrap_or(key).replace('_', " ");
-                let message = format!("the {name} is {} at {}", values[index], points.place(index));
-                let cure = format!("a {name} is never negative; max(..., 0) cuts a formula off");
-                Err(self.fault(key, message, &cure))
-            }
-        }
     }
 }

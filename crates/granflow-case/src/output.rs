@@ -1,8 +1,9 @@
 //! `[output]`: which files, how many instants, how many digits.
 
-use crate::checked::{Ends, Frames};
 use crate::fault::CaseError;
+use crate::file_kind::FileKind;
 use crate::look::Look;
+use crate::plan::{Ends, Frames};
 use crate::precision::Precision;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -85,14 +86,3 @@ impl Output {
 
 /// Files of a case on a grid that does not say which.
 pub(crate) const ON_A_GRID: &[&str] = &["netcdf", "figures"];
-
-/// A kind of output file that a case may ask for, as the one who writes it describes it.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct FileKind {
-    /// The name a case file writes.
-    pub name: &'static str,
-    /// What it is, for the schema.
-    pub about: &'static str,
-    /// It needs a raster with a place on the earth.
-    pub needs_terrain: bool,
-}

@@ -7,7 +7,7 @@ use serde::{Deserialize, Deserializer, Serialize};
 
 use super::array;
 use super::choice::{Plain, plain_or_table};
-use super::fault::PartFault;
+use super::fault::{CaseError, PartFault};
 use super::formula::Formula;
 use super::grid::Points;
 use super::look::Look;
@@ -202,6 +202,45 @@ impl Quantity {
         match self {
             Self::Shape(Shape::File(path)) => Some(path),
             _ => None,
+        }
+    }
+}
+
+impl Look<'_> {
+    /// A quantity at all points, 0 where the case does not say; every value is finite.
+    pub fn evaluate(
+        &self,
+        points: &Points,
+        key: &str,
+        quantity: Option<&Quantity>,
+    ) -> Result<Vec<f64>, CaseError> {
+        let quantity = quantity.unwrap_or(&Quantity::Constant(0.0));
+        let values = quantity.on(points, self).map_err(|fault| self.part_fault(key, fault))?;
+        match values.iter().position(|value| !value.is_finite()) {
+            None => Ok(values),
+            Some(index) => Err(self
+                .source
+                .fault(key, format!("the value is {} at {}", values[index], points.place(index)))
+                .help("every cell needs a finite number")),
+        }
+    }
+
+    /// A quantity that is never negative.
+    pub fn layer(
+        &self,
+        points: &Points,
+        key: &str,
+        quantity: Option<&Quantity>,
+    ) -> Result<Vec<f64>, CaseError> {
+        let values = self.evaluate(points, key, quantity)?;
+        match values.iter().position(|value| *value < 0.0) {
+            None => Ok(values),
+            Some(index) => {
+                let name = key.rsplit('.').next().unwrap_or(key).replace('_', " ");
+                let message = format!("the {name} is {} at {}", values[index], points.place(index));
+                let cure = format!("a {name} is never negative; max(..., 0) cuts a formula off");
+                Err(self.fault(key, message, &cure))
+            }
         }
     }
 }

@@ -9,7 +9,7 @@ mod sandpile;
 /// The disk, without a reader of polygons.
 struct Disk;
 
-impl Files for Disk {
+impl FileAccess for Disk {
     fn outlines(&self, path: &Path) -> Result<Box<dyn Outline>, String> {
         Err(format!("{} holds no polygon", path.display()))
     }

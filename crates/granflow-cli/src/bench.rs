@@ -5,8 +5,9 @@ use std::path::PathBuf;
 use std::time::Duration;
 
 use granflow::case::nearest;
+use granflow::models::setups;
 use granflow::simulation::SimdLevel;
-use granflow::speed::{Extent, Setup, SpeedError, Triad, setups, spells};
+use granflow::speed::{Extent, Setup, SpeedError, Triad, spells};
 
 use crate::failure::{Failure, print};
 

@@ -14,7 +14,7 @@ use super::lattice::{Lattice, paint};
 use super::legend::{Key, Legend, along};
 use super::relief::{Relief, ground};
 use super::scale_bar::ScaleBar;
-use super::view::{Extent, paper};
+use super::view::{Extent, View, paper};
 use super::{Figure, FigureError, Picture};
 
 /// The field laid over the mountain.
@@ -79,7 +79,13 @@ impl Map<'_> {
         self.check()?;
         let view = self.view();
         let (width, height) = paper(view);
-        Ok(Relief::of(self, view, Area { left: 0.0, top: 0.0, width, height }.pixels()))
+        Ok(Relief::of(
+            self.bed,
+            self.extent,
+            self.contours,
+            view,
+            Area { left: 0.0, top: 0.0, width, height }.pixels(),
+        ))
     }
 
     fn check(&self) -> Result<(), FigureError> {
@@ -218,7 +224,7 @@ impl Figure for Map<'_> {
         let relief = match self.relief {
             Some(relief) if relief.shows(view, pixels) => relief,
             _ => {
-                own = Relief::of(self, view, pixels);
+                own = Relief::of(self.bed, self.extent, self.contours, view, pixels);
                 &own
             }
         };
@@ -233,6 +239,34 @@ impl Figure for Map<'_> {
             bar.draw(&mut canvas, panel.area.right() + 16.0, panel.area.top, panel.area.height);
         }
         Ok(canvas.finish())
+    }
+}
+
+impl Map<'_> {
+    /// The whole raster, or the box around what is of interest, not narrower than 1 to 2.2.
+    pub(super) fn view(&self) -> View {
+        let e = self.extent;
+        let whole = View { x: [e.west, e.east()], y: [e.south, e.north()] };
+        let Some(margin) = self.crop else { return whole };
+        let (mut xs, mut ys): (Vec<f64>, Vec<f64>) =
+            self.outlines.iter().flat_map(|o| o.points).map(|p| (p[0], p[1])).unzip();
+        if let Some(overlay) = self.overlay {
+            for (k, _) in overlay.values.iter().enumerate().filter(|&(_, &v)| v > overlay.threshold) {
+                let (i, j) = ((k % e.nx) as f64, (k / e.nx) as f64);
+                xs.extend([e.west + i * e.cell, e.west + (i + 1.0) * e.cell]);
+                ys.extend([e.south + j * e.cell, e.south + (j + 1.0) * e.cell]);
+            }
+        }
+        let (Some([x0, x1]), Some([y0, y1])) = (extent(xs), extent(ys)) else { return whole };
+        let greater = (x1 - x0).max(y1 - y0).max(12.0 * e.cell);
+        // Each side: the box and its margin, the other side over 2.2 at least, the raster at most.
+        let side = |[low, high]: [f64; 2], [least, most]: [f64; 2]| {
+            let half = (0.5 * (high - low) + margin.max(0.0) * greater).max(greater / 4.4);
+            let middle = 0.5 * (low + high);
+            let (low, high) = ((middle - half).max(least), (middle + half).min(most));
+            if low < high { [low, high] } else { [least, most] }
+        };
+        View { x: side([x0, x1], whole.x), y: side([y0, y1], whole.y) }
     }
 }
 
@@ -271,5 +305,23 @@ mod tests {
         assert_eq!(colour_range(&overlay), [0.0, 0.2]);
         let flat = Overlay { values: &[2.0, 2.0], threshold: 0.1, ..Default::default() };
         assert_eq!(colour_range(&flat), [0.0, 2.0]);
+    }
+
+    #[test]
+    fn the_view_holds_the_field_and_stays_inside() {
+        let extent = Extent { nx: 100, ny: 80, west: 1000.0, south: 2000.0, cell: 10.0 };
+        let bed = vec![0.0; 8000];
+        let mut values = vec![0.0; 8000];
+        for j in 20..60 {
+            values[j * 100 + 3] = 1.0;
+        }
+        let overlay = Overlay { values: &values, threshold: 0.5, ..Default::default() };
+        let map = Map { extent, bed: &bed, overlay: Some(overlay), crop: Some(0.1), ..Default::default() };
+        let view = map.view();
+        assert_eq!(view.y, [2200.0 - 40.0, 2600.0 + 40.0]);
+        assert_eq!(view.x[0], 1000.0);
+        assert!(view.x[1] >= 1040.0 + 40.0 && view.x[1] - view.x[0] < 400.0);
+        let nothing = Map { overlay: None, ..map };
+        assert_eq!(nothing.view().x, [1000.0, 2000.0]);
     }
 }

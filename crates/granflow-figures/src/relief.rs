@@ -4,9 +4,8 @@ use super::axes::extent;
 use super::colours::{Rgb, whole};
 use super::contours::{Contours, Elevations};
 use super::lattice::{Between, Lattice};
-use super::map::Map;
 use super::rows;
-use super::view::View;
+use super::view::{Extent, View};
 
 /// The mountain at every pixel of a map, without what happened on it: maps that show the same box have it in common.
 #[derive(Debug, Clone, PartialEq)]
@@ -25,9 +24,14 @@ pub struct Relief {
 }
 
 impl Relief {
-    /// The relief of `map` in the box `view` on so many pixels.
-    pub(super) fn of(map: &Map, view: View, (columns, rows): (usize, usize)) -> Relief {
-        let e = map.extent;
+    /// The relief of the elevations `bed` of a raster in the box `view` on so many pixels, with contour lines or without.
+    pub(super) fn of(
+        bed: &[f64],
+        e: Extent,
+        lines: bool,
+        view: View,
+        (columns, rows): (usize, usize),
+    ) -> Relief {
         let at = |k: usize, n: usize, [low, high]: [f64; 2]| low + (high - low) * (k as f64 + 0.5) / n as f64;
         let across: Vec<_> = (0..columns)
             .map(|k| Between::new((at(k, columns, view.x) - e.west) / e.cell - 0.5, e.nx))
@@ -44,10 +48,10 @@ impl Relief {
             });
             pixels
         };
-        let elevation = at_pixels(map.bed);
-        let light = at_pixels(&hillshade(map.bed, e.nx, e.ny, e.cell));
+        let elevation = at_pixels(bed);
+        let light = at_pixels(&hillshade(bed, e.nx, e.ny, e.cell));
         let shown = extent(elevation.iter().copied());
-        let contours = shown.filter(|_| map.contours).and_then(|[low, high]| Contours::over(high - low));
+        let contours = shown.filter(|_| lines).and_then(|[low, high]| Contours::over(high - low));
         let mut ink = Vec::new();
         if let Some(contours) = contours {
             let elevations = Elevations { elevation: &elevation, columns, rows };

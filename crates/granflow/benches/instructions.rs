@@ -3,7 +3,8 @@
 //! `.ci/instructions` counts, and fails where a number differs by more than 2 % from `instructions.txt`, up or down;
 //! `.ci/instructions --record` writes that file. valgrind knows no AVX-512: what is counted are the lanes of AVX2.
 
-use granflow::speed::{Extent, Setup, setups};
+use granflow::models::setups;
+use granflow::speed::{Extent, Setup};
 use std::path::Path;
 use std::process::{Command, ExitCode};
 

@@ -2,7 +2,8 @@
 //! schemes` prints a table; medians of rounds that are taken in turn, so that other work on the machine falls on all
 //! alike. On grids that fit the second-level cache: formulas are compared here, the memory by `granflow bench`.
 
-use granflow::speed::{Extent, Load, median, setups};
+use granflow::models::setups;
+use granflow::speed::{Extent, Load, median};
 use std::time::Instant;
 
 /// Cells along each axis.

@@ -1,8 +1,9 @@
 //! The case file of a run: what [`granflow_case`] reads, joined with the files of the world and the models.
 
 use crate::disk::Disk;
-use crate::registry;
+use crate::models;
 use crate::run::Run;
+pub use crate::start_error::StartError;
 pub use granflow_case::*;
 use std::ops::Deref;
 use std::path::Path;
@@ -79,7 +80,7 @@ impl Checked {
     /// [`StartError`] at the first file or key that cannot be used.
     pub fn start(self) -> Result<Box<dyn Run>, StartError> {
         let granflow_case::Checked { run, kind } = self.0;
-        registry::start(&run, kind)
+        models::start(&run, kind)
     }
     /// What would be computed, and how large it is: names and values, one line each.
     ///
@@ -87,7 +88,7 @@ impl Checked {
     /// As [`Checked::start`].
     pub fn describe(self) -> Result<Vec<(&'static str, String)>, StartError> {
         let granflow_case::Checked { run, kind } = self.0;
-        registry::describe(&run, kind)
+        models::describe(&run, kind)
     }
 }
 
@@ -96,43 +97,4 @@ impl Checked {
 #[must_use]
 pub fn json_schema() -> serde_json::Value {
     granflow_case::json_schema(Disk.kinds())
-}
-
-/// Why a run could not be set up.
-#[derive(Debug, thiserror::Error)]
-pub enum StartError {
-    /// The case itself is wrong.
-    #[error(transparent)]
-    Case(#[from] CaseError),
-    /// The terrain, or a raster of thicknesses, cannot be used.
-    #[cfg(feature = "geo")]
-    #[error(transparent)]
-    Raster(Box<granflow_geo::raster::RasterError>),
-    /// A release cannot be used.
-    #[cfg(feature = "geo")]
-    #[error(transparent)]
-    Release(Box<granflow_geo::release::ReleaseError>),
-    /// The numbers do not make a simulation.
-    #[error(transparent)]
-    Build(#[from] granflow_engine::simulation::BuildError),
-    /// The library was built without a feature that this case needs.
-    #[error("this needs granflow's feature `{feature}`: build with `--features {feature}`")]
-    Feature {
-        /// The feature.
-        feature: &'static str,
-    },
-}
-
-#[cfg(feature = "geo")]
-impl From<granflow_geo::raster::RasterError> for StartError {
-    fn from(error: granflow_geo::raster::RasterError) -> Self {
-        StartError::Raster(Box::new(error))
-    }
-}
-
-#[cfg(feature = "geo")]
-impl From<granflow_geo::release::ReleaseError> for StartError {
-    fn from(error: granflow_geo::release::ReleaseError) -> Self {
-        StartError::Release(Box::new(error))
-    }
 }

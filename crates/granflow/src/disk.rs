@@ -1,13 +1,13 @@
 //! The files that a case names, read from the disk, and the kinds that it may ask for.
 
-use crate::case::{FileKind, Files, Outline};
+use granflow_case::{FileAccess, FileKind, Outline};
 use std::path::Path;
 
 /// The disk: polygons are read as GeoJSON or shapefiles.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct Disk;
 
-impl Files for Disk {
+impl FileAccess for Disk {
     #[cfg(feature = "geo")]
     fn outlines(&self, path: &Path) -> Result<Box<dyn Outline>, String> {
         let outlines = granflow_geo::release::Outlines::read(path).map_err(|error| error.to_string())?;

@@ -67,11 +67,12 @@ pub mod build;
 pub mod case;
 pub mod describe;
 mod disk;
+mod entry;
+mod field;
 pub mod model;
 pub mod models;
 #[cfg(feature = "files")]
 pub mod output;
-mod registry;
 #[cfg(feature = "files")]
 pub mod results;
 pub mod run;
@@ -80,14 +81,17 @@ pub mod session;
 pub mod sinks;
 #[cfg(all(feature = "geo", feature = "threads"))]
 pub mod speed;
+mod start_error;
+mod stop_reason;
 
-pub use case::{Case, Checked, StartError};
+pub use case::{Case, Checked};
 pub use disk::Disk;
 pub use granflow_engine::{grid, kernel, kernels, simulation};
 #[cfg(feature = "geo")]
 pub use granflow_geo::{raster, release, terrain};
 pub use granflow_model::{hadeler_kuttler, limiter, real, savage_hutter, scheme, time};
 pub use model::Words;
+pub use start_error::StartError;
 
 /// The README's library example is a test.
 #[cfg(doctest)]

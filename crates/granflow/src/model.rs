@@ -17,6 +17,7 @@ mod result_file;
 #[cfg(feature = "figures")]
 mod view;
 
+pub use crate::field::Field;
 pub use domain::{Domain, Maps, Model, Words};
 #[cfg(feature = "figures")]
 pub use domain::{Instants, Pictures, Scene};
@@ -27,7 +28,7 @@ pub use history::history;
 pub use plane::Plane;
 #[cfg(feature = "figures")]
 pub use profiles::{Line, PILE, profiles};
-pub use quantity::{At, Field, Kind, Quantity, Units};
+pub use quantity::{At, Kind, Quantity, Units};
 #[cfg(feature = "figures")]
 pub use result_file::ResultFile;
 #[cfg(feature = "figures")]

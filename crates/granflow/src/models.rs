@@ -1,12 +1,49 @@
-//! The models of this library: each is one folder and one line.
+//! The models of this library: each is one folder, and is named here, where it is found by a case and by a result.
 
 pub mod hadeler_kuttler;
 pub mod savage_hutter;
 
+use crate::StartError;
+use crate::describe::Line;
 use crate::model::Model;
+use crate::run::Run;
+#[cfg(all(feature = "geo", feature = "threads"))]
+use crate::speed::Setup;
+use granflow_case::{Kind, RunPlan};
 
 /// All models, by which a result file finds its own.
 pub static MODELS: &[&Model] = &[
     &savage_hutter::MODEL, //
     &hadeler_kuttler::MODEL,
 ];
+
+/// The run of a checked case.
+pub(crate) fn start(run: &RunPlan, kind: Kind) -> Result<Box<dyn Run>, StartError> {
+    match kind {
+        Kind::Chute(plan) => savage_hutter::run::chute::start(run, plan),
+        #[cfg(feature = "geo")]
+        Kind::Terrain(plan) => savage_hutter::run::terrain::start(run, &plan),
+        #[cfg(not(feature = "geo"))]
+        Kind::Terrain(_) => Err(StartError::Feature { feature: "geo" }),
+        Kind::Sandpile(plan) => hadeler_kuttler::run::start::start(run, plan),
+    }
+}
+
+/// What a checked case would compute.
+pub(crate) fn describe(run: &RunPlan, kind: Kind) -> Result<Vec<Line>, StartError> {
+    match kind {
+        Kind::Chute(plan) => savage_hutter::run::describe::chute(run, plan),
+        #[cfg(feature = "geo")]
+        Kind::Terrain(plan) => savage_hutter::run::describe::terrain(run, &plan),
+        #[cfg(not(feature = "geo"))]
+        Kind::Terrain(_) => Err(StartError::Feature { feature: "geo" }),
+        Kind::Sandpile(plan) => Ok(hadeler_kuttler::run::describe::lines(run, &plan)),
+    }
+}
+
+/// The runs to measure by, of all models.
+#[cfg(all(feature = "geo", feature = "threads"))]
+#[must_use]
+pub fn setups() -> impl Iterator<Item = &'static Setup> + Clone {
+    savage_hutter::run::speed::SETUPS.iter().chain(hadeler_kuttler::run::speed::SETUPS)
+}

@@ -1,21 +1,12 @@
 //! What a run leaves: the series, the maps, the ledger, and the files made of them.
 
-#[cfg(feature = "figures")]
-mod animation;
 mod dataset;
 mod error;
 mod files;
+mod format;
 pub(crate) mod formats;
-mod netcdf;
-#[cfg(feature = "geo")]
-mod rasters;
-#[cfg(feature = "figures")]
-mod report;
 #[cfg(feature = "figures")]
 mod story;
-mod tables;
-#[cfg(feature = "geo")]
-mod vector;
 
 pub use crate::model::{Maps, Plane};
 pub use crate::output::summary::FILM_SHARE;
@@ -25,12 +16,12 @@ pub use files::check_kinds;
 #[cfg(feature = "figures")]
 pub use story::Story;
 
-use crate::case::FileKind;
 use crate::output;
 use crate::output::frames::Frames;
 use crate::output::ledger::Entry;
 use crate::output::netcdf::{Values, history};
 use crate::output::summary::Summary;
+use granflow_case::FileKind;
 use std::path::{Path, PathBuf};
 use std::time::SystemTime;
 

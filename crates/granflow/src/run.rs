@@ -11,10 +11,12 @@ mod frames;
 mod record;
 mod saved;
 mod simulated;
-mod stop_reason;
+mod sink;
 
+pub use crate::entry::{Entry, sum};
+pub use crate::stop_reason::StopReason;
 pub use drive::{DriveError, drive};
-pub use entry::{Entry, mass_error, sum};
+pub use entry::mass_error;
 pub use field_view::FieldView;
 pub use frames::Frames;
 pub(crate) use frames::after;
@@ -23,11 +25,11 @@ pub use granflow_engine::simulation::{Failure, Totals};
 pub use record::Record;
 pub use saved::Saved;
 pub use simulated::{CellOf, Field, Numbers, Physics, Simulated, Value};
-pub use stop_reason::StopReason;
+pub use sink::{Sink, SinkError};
 
 pub use crate::model::Maps;
 use crate::model::Plane;
-use granflow_engine::Stepper;
+pub use granflow_engine::Stepper;
 
 /// A run under way.
 pub trait Run: Send + Sync {

@@ -15,11 +15,6 @@ use crate::kernels::Kernel;
 use crate::simulation::{Failure, SimdLevel, Simulation, Traffic};
 use granflow_engine::Field;
 
-/// All runs to measure by, of all models.
-pub fn setups() -> impl Iterator<Item = &'static Setup> + Clone {
-    crate::registry::setups()
-}
-
 /// A run to be measured, of whatever scheme.
 pub trait Load: Send {
     /// Cells that are computed in a step.
@@ -100,6 +95,7 @@ impl<const D: usize, S: Kernel<D>> Load for Begun<D, S> {
 mod tests {
     use super::*;
     use crate::models::savage_hutter::run::speed as avalanches;
+    use crate::models::setups;
 
     fn whole(cells: usize) -> Extent {
         Extent { cells, wet: 1.0 }

@@ -1,7 +1,7 @@
 //! One small run on a mountain and one on a chute: every kind of file opens and holds what the run left.
 
 use granflow::Case;
-use granflow::case::{FileKind, Files};
+use granflow::case::{FileAccess, FileKind};
 use granflow::model::{At, Domain, Model, Plane, Quantity};
 use granflow::output::Precision;
 use granflow::output::netcdf::{Dataset, Values};

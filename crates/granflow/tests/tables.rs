@@ -1,7 +1,7 @@
 //! Made-up sandpiles on tables of every shape: each file opens and holds what the run left. The pictures stay in
 //! `target/tmp/tables`.
 
-use granflow::case::Files;
+use granflow::case::FileAccess;
 use granflow::models::hadeler_kuttler::TableDomain;
 use granflow::output::Precision;
 use granflow::output::frames::Frames;

@@ -274,7 +274,7 @@ impl<'a> Reader<'a> {
             .chain(functions)
             .chain(CHOICE.iter().copied())
             .collect();
-        let near = crate::fault::nearest(name, known.iter().copied())
+        let near = crate::nearest::nearest(name, known.iter().copied())
             .map(|near| format!(" (did you mean `{near}`?)"))
             .unwrap_or_default();
         let message = format!("unknown name `{name}`{near}; known are {}", known.join(", "));

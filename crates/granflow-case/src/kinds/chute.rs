@@ -6,11 +6,11 @@ use serde::{Deserialize, Serialize};
 use super::avalanche::{self, EarthPressure, Friction, Material, SchemeName};
 use super::{About, Foreign, Kind, Written};
 use crate::boundary::{Boundary, Side};
-use crate::checked::{Checked, RunPlan};
 use crate::fault::CaseError;
 use crate::grid::{Axis, Grid, Points};
 use crate::look::Look;
 use crate::output::{ON_A_GRID, Output};
+use crate::plan::RunPlan;
 use crate::precision::Precision;
 use crate::quantity::Quantity;
 use crate::source::Missing;
@@ -164,7 +164,7 @@ impl Written for Words {
         missing: MISSING,
     };
 
-    fn check(&self, look: &Look) -> Result<Checked, CaseError> {
+    fn check(&self, look: &Look) -> Result<(RunPlan, Kind), CaseError> {
         let Self { title, grid, material, initial, scheme, time, output, .. } = self;
         let cells = Grid { x: grid.x.clone(), y: grid.y.clone() };
         cells.check(look)?;
@@ -200,7 +200,7 @@ impl Written for Words {
             film: scheme.film(),
             initial,
         });
-        Ok(Checked { run, kind })
+        Ok((run, kind))
     }
 }
 

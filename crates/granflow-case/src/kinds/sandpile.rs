@@ -4,11 +4,11 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::{About, Foreign, Kind, Written};
-use crate::checked::{Checked, RunPlan, Until};
 use crate::fault::CaseError;
 use crate::grid::Grid;
 use crate::look::Look;
 use crate::output::{ON_A_GRID, Output};
+use crate::plan::{RunPlan, Until};
 use crate::precision::Precision;
 use crate::quantity::Quantity;
 use crate::source::Missing;
@@ -127,7 +127,7 @@ impl Written for Words {
         missing: MISSING,
     };
 
-    fn check(&self, look: &Look) -> Result<Checked, CaseError> {
+    fn check(&self, look: &Look) -> Result<(RunPlan, Kind), CaseError> {
         let Self { title, grid, scheme, time, output, .. } = self;
         grid.check(look)?;
         let stepping = scheme.check(look)?;
@@ -159,7 +159,7 @@ impl Written for Words {
             theta_exponent: scheme.theta_exponent.unwrap_or(2.0),
             table,
         });
-        Ok(Checked { run, kind })
+        Ok((run, kind))
     }
 }
 

@@ -7,10 +7,10 @@ use serde::{Deserialize, Serialize};
 
 use super::avalanche::{self, EarthPressure, Friction, Material, SchemeName};
 use super::{About, Foreign, Kind, Written};
-use crate::checked::{Checked, RunPlan};
 use crate::fault::CaseError;
 use crate::look::Look;
 use crate::output::Output;
+use crate::plan::RunPlan;
 use crate::precision::Precision;
 use crate::source::Missing;
 
@@ -107,7 +107,7 @@ impl Written for Words {
         missing: MISSING,
     };
 
-    fn check(&self, look: &Look) -> Result<Checked, CaseError> {
+    fn check(&self, look: &Look) -> Result<(RunPlan, Kind), CaseError> {
         let Self { title, terrain, material, release, scheme, time, output, .. } = self;
         if release.is_empty() {
             return Err(look.fault(
@@ -153,7 +153,7 @@ impl Written for Words {
             scheme: order,
             film: scheme.film(),
         });
-        Ok(Checked { run, kind })
+        Ok((run, kind))
     }
 }
 

@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 /// Every file is there.
 struct Everywhere;
 
-impl Files for Everywhere {
+impl FileAccess for Everywhere {
     fn kinds(&self) -> &'static [FileKind] {
         super::Disk.kinds()
     }

@@ -177,7 +177,7 @@ fn a_table_from_a_file() {
 /// A reader that knows one drawing, in `table.geojson`.
 struct Drawn;
 
-impl Files for Drawn {
+impl FileAccess for Drawn {
     fn outlines(&self, path: &Path) -> Result<Box<dyn Outline>, String> {
         match path.ends_with("table.geojson") {
             true => Ok(Box::new(Ring)),

@@ -78,7 +78,10 @@ pub struct Simulation<const D: usize, S: Scheme<D, f64>> {
 }
 
 /// The field whose cells have these values, given by index per axis.
-fn laid_out<const D: usize, P: Components<f64>>(layout: &Layout, value: impl Fn([usize; D]) -> P + Sync) -> Field {
+fn laid_out<const D: usize, P: Components<f64>>(
+    layout: &Layout,
+    value: impl Fn([usize; D]) -> P + Sync,
+) -> Field {
     const { assert!(D == 1 || D == 2, "a grid has one dimension or two") };
     let mut field = Field::zeros::<P>(layout);
     field.fill(layout, |column, row| value(per_axis!(k => if k == 0 { column } else { row })));

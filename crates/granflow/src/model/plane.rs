@@ -3,7 +3,8 @@
 #[cfg(feature = "files")]
 use super::domain::Maps;
 use super::domain::{Domain, Model};
-use super::quantity::{At, Field, Kind};
+use super::quantity::{At, Kind};
+use crate::field::Field;
 use crate::grid::Grid;
 #[cfg(feature = "files")]
 use crate::output::summary::Summary;

@@ -1,7 +1,5 @@
 //! A quantity of a model as the files know it: names, units, and where its values stand.
 
-use serde::{Deserialize, Serialize};
-
 /// The units of a run.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Units {
@@ -154,13 +152,4 @@ impl Quantity {
             Units::Si => self.units[1],
         }
     }
-}
-
-/// A named field of every frame and how many numbers it has.
-#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
-pub struct Field {
-    /// The name, as the variable of the result is called.
-    pub name: String,
-    /// How many numbers one frame holds.
-    pub length: usize,
 }

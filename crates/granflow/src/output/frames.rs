@@ -7,7 +7,7 @@
 //! for beside the steps.
 
 use super::{Error, Precision, Summed, whole_file};
-pub use crate::model::Field;
+pub use crate::field::Field;
 use serde::{Deserialize, Serialize};
 use std::fmt;
 use std::fs::{File, OpenOptions};

@@ -1,7 +1,7 @@
 //! The ledger `mass.csv`: where the mass is at every output instant, and the sums it rests on.
 
 use super::{Error, whole_file};
-pub use crate::run::Entry;
+pub use crate::entry::Entry;
 use std::fs::{self, OpenOptions};
 use std::io::Write;
 use std::path::{Path, PathBuf};

@@ -1,7 +1,7 @@
 //! `summary.json`: a run in thirty numbers.
 
 use super::{Error, whole_file};
-pub use crate::run::StopReason;
+pub use crate::stop_reason::StopReason;
 use serde::{Deserialize, Deserializer, Serialize};
 use std::fs;
 use std::io;

@@ -1,11 +1,11 @@
 //! Why a file could not be made of a run.
 
-use crate::case::FileKind;
 use crate::output;
 #[cfg(feature = "figures")]
 use crate::output::figures::PictureError;
 #[cfg(feature = "geo")]
 use crate::raster::RasterError;
+use granflow_case::FileKind;
 use std::path::PathBuf;
 
 /// Why a file could not be made of a run.

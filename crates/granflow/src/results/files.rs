@@ -1,9 +1,10 @@
 //! All files that a case asks for, made of a finished run.
 
-use super::formats::{FORMATS, Format, Work};
+use super::format::{Format, Work};
+use super::formats::FORMATS;
 use super::{FilesError, Finished};
-use crate::case::FileKind;
 use crate::model::Plane;
+use granflow_case::FileKind;
 use rayon::prelude::*;
 use std::path::PathBuf;
 

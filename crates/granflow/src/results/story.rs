@@ -1,8 +1,6 @@
 //! What the figures need of a run, from the run itself or from its files.
 
-use super::formats::Format;
 use super::{FilesError, Finished};
-use crate::case::FileKind;
 use crate::model::{Domain, Kind, Model, Pictures, Plane, ResultFile, View, save_all};
 use crate::models::MODELS;
 use crate::output;
@@ -137,18 +135,6 @@ impl<'r> Story<'r> {
         Ok(save_all(&pictures.figures(&self.view, &*self.domain), folder)?)
     }
 }
-
-/// The figures.
-pub(super) static FIGURES: Format = Format {
-    kind: FileKind { name: "figures", about: "Figures, figures/*.png.", needs_terrain: false },
-    drawn: true,
-    after_figures: false,
-    write: |work| {
-        let Some(story) = &work.story else { return Ok(Vec::new()) };
-        let figures = story.draw(&work.run.figures())?;
-        Ok(work.figures.get_or_init(|| figures).iter().map(|figure| figure.path.clone()).collect())
-    },
-};
 
 /// The model that a file names; of a file that names none of these, the first whose variables it has.
 fn model(

@@ -1,7 +1,6 @@
 //! The loop: steps until one of a run's ends is reached, sinks looking on.
 
-use super::{Ends, Failure, Run, StopReason, Until};
-use crate::sinks::{Sink, SinkError};
+use super::{Ends, Failure, Run, Sink, SinkError, StopReason, Until};
 
 /// Why a run did not reach an end.
 #[derive(Debug, thiserror::Error)]

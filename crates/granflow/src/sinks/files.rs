@@ -217,8 +217,8 @@ impl Files {
         }
         self.checkpoint(&*run, due)?;
         let command = self.command.clone();
-        let (ending, writer) = Ending::last(self, run, reason);
-        let (frames, ledger) = writer.end()?;
+        let ending = Ending::last(&self, run, reason);
+        let (frames, ledger) = self.writer.end()?;
         let finished = ending.finished(frames, ledger.into_entries());
         finished.write(&command)?;
         Ok(finished)
@@ -230,8 +230,8 @@ impl Files {
     /// [`output::Error`] naming the file.
     pub fn give_up(self, run: Box<dyn Run>) -> Result<Finished, output::Error> {
         let command = self.command.clone();
-        let (ending, writer) = Ending::last(self, run, StopReason::Interrupted);
-        let (frames, ledger) = writer.end()?;
+        let ending = Ending::last(&self, run, StopReason::Interrupted);
+        let (frames, ledger) = self.writer.end()?;
         let finished = ending.finished(frames, ledger.into_entries());
         finished.write_result(&command)?;
         Ok(finished)

@@ -9,9 +9,10 @@ use granflow_model::savage_hutter::kinetic::{
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use crate::checked::Stepping;
 use crate::fault::CaseError;
-use crate::look::{Look, StepLimits};
+use crate::look::Look;
+use crate::plan::Stepping;
+use crate::stepping::StepLimits;
 
 /// The numerical method.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize, JsonSchema)]

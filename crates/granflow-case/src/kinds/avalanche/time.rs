@@ -4,9 +4,9 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::SchemeName;
-use crate::checked::{Ends, Until};
 use crate::fault::CaseError;
 use crate::look::Look;
+use crate::plan::{Ends, Until};
 
 /// The end of the run: at least one of `steps`, `end`, `until`, `stop`; the first that is reached ends it.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]

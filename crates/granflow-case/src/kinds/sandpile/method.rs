@@ -4,9 +4,10 @@ use granflow_model::hadeler_kuttler::scheme::{FIRST_ORDER, HadelerKuttler, SECON
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use crate::checked::{Ends, Stepping, Until};
 use crate::fault::CaseError;
-use crate::look::{Look, StepLimits};
+use crate::look::Look;
+use crate::plan::{Ends, Stepping, Until};
+use crate::stepping::StepLimits;
 
 /// The numerical method.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize, JsonSchema)]

@@ -2,6 +2,7 @@
 
 pub(crate) mod describe;
 mod pouring;
+mod sand;
 pub mod sandpile;
 pub mod site;
 #[cfg(all(feature = "geo", feature = "threads"))]

@@ -1,13 +1,12 @@
 //! A run as it ends: maps, figures, and why.
 
 use super::Files;
-use super::writer::Writer;
-use crate::case::FileKind;
 use crate::model::Plane;
 use crate::output::frames::Frames;
 use crate::output::summary::{StopReason, Summary};
 use crate::results::Finished;
 use crate::run::{Entry, Maps, Run, Until, mass_error, sum};
+use granflow_case::FileKind;
 use std::path::PathBuf;
 
 /// A finished run but for its series and its ledger, which the writer has.
@@ -32,16 +31,15 @@ impl Ending {
         Ending::with(files, run.place(), maps, summary(files, run, reason))
     }
 
-    /// What there is at the end, and the writer.
-    pub fn last(files: Files, mut run: Box<dyn Run>, reason: StopReason) -> (Ending, Writer) {
+    /// What there is at the end.
+    pub fn last(files: &Files, mut run: Box<dyn Run>, reason: StopReason) -> Ending {
         run.stepper_mut().release_buffers();
         let end = run.maps();
-        let summary = summary(&files, &*run, reason);
+        let summary = summary(files, &*run, reason);
         let plane = run.place();
         let mut maps = run.into_peaks();
         maps.extend(end);
-        let ending = Ending::with(&files, plane, maps, summary);
-        (ending, files.writer)
+        Ending::with(files, plane, maps, summary)
     }
 
     fn with(files: &Files, plane: Plane, maps: Maps, summary: Summary) -> Ending {

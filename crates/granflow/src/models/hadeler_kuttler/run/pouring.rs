@@ -1,7 +1,7 @@
 //! A growing sandpile as a run shows it: the two layers, and sources that flow, switch and move.
 
 use super::super::TableDomain;
-use super::start::Sand;
+use super::sand::Sand;
 use crate::model::Domain;
 use crate::run::{CellOf, Field, Maps, Numbers, Physics, Record, Value};
 use granflow_engine::simulation::Simulation;

@@ -1,7 +1,8 @@
 //! A growing sandpile without a case file.
 
+use super::sand::{Places, Sand, Sources};
 use super::site::Site;
-use super::start::{Places, Sand, Sources, pour};
+use super::start::pour;
 use crate::run::Run;
 use granflow_engine::simulation::{BuildError, StepSize};
 use granflow_model::hadeler_kuttler::scheme::{ADAPTIVE, FIRST_ORDER, HadelerKuttler, SECOND_ORDER};

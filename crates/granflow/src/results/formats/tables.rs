@@ -1,10 +1,10 @@
 //! The series and maps of a run as csv tables, and as frames for ParaView.
 
-use super::Finished;
-use super::formats::Format;
-use crate::case::FileKind;
 use crate::model::{At, Kind};
 use crate::output::{self, csv, vtk};
+use crate::results::Finished;
+use crate::results::format::Format;
+use granflow_case::FileKind;
 use std::path::{Path, PathBuf};
 
 /// Tables.

@@ -1,9 +1,9 @@
 //! `outlines.geojson`, where the model outlines anything.
 
-use super::FilesError;
-use super::formats::{Format, Work};
-use crate::case::FileKind;
 use crate::output::outlines;
+use crate::results::FilesError;
+use crate::results::format::{Format, Work};
+use granflow_case::FileKind;
 use std::path::PathBuf;
 
 /// Outlines for a geographic information system.

@@ -1,10 +1,10 @@
 //! `rasters/*.tif`: the summary maps for a geographic information system.
 
-use super::Finished;
-use super::formats::Format;
-use crate::case::FileKind;
 use crate::model::{At, Kind, Quantity};
 use crate::raster::RasterError;
+use crate::results::Finished;
+use crate::results::format::Format;
+use granflow_case::FileKind;
 use rayon::prelude::*;
 use std::path::PathBuf;
 

@@ -1,13 +1,13 @@
 //! `animation.png`: the series over time as an animated PNG, which every browser shows.
 
-use super::formats::Format;
-use super::{FilesError, Finished, Story};
-use crate::case::FileKind;
 use crate::model::Scene;
 use crate::output;
 use crate::output::figures::{FigureError, Picture, PictureError};
 use crate::output::frames::Frames;
 use crate::output::whole_file;
+use crate::results::format::Format;
+use crate::results::{FilesError, Finished, Story};
+use granflow_case::FileKind;
 use rayon::prelude::*;
 use std::io::{self, Write};
 use std::path::PathBuf;

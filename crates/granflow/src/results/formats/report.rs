@@ -1,10 +1,10 @@
 //! `report.html`: one page that shows it all.
 
-use super::formats::{Format, Work};
-use super::{FilesError, Finished};
-use crate::case::FileKind;
 use crate::output;
 use crate::output::report::{Figure, Report, write_report};
+use crate::results::format::{Format, Work};
+use crate::results::{FilesError, Finished};
+use granflow_case::FileKind;
 use std::path::PathBuf;
 
 /// The report, which shows the figures.

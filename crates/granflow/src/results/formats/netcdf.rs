@@ -1,7 +1,7 @@
 //! `result.nc`, which every run leaves.
 
-use super::formats::Format;
-use crate::case::FileKind;
+use crate::results::format::Format;
+use granflow_case::FileKind;
 
 /// Written in any case: nothing more to do.
 pub(super) static NETCDF: Format = Format::of(

@@ -1,0 +1,126 @@
+//! What every kind of case says of its run: steps, ends, frames, files.
+
+use std::path::{Path, PathBuf};
+
+use super::fault::CaseError;
+use super::file_kind::FileKind;
+use super::precision::Precision;
+use super::source::Source;
+
+/// The part of a checked case that every kind has.
+#[derive(Debug, Clone)]
+pub struct RunPlan {
+    /// Heading of figures and report; empty if the case has none.
+    pub title: String,
+    /// Name of the model, as the case file writes it.
+    pub model: &'static str,
+    /// Name of the scheme, as the case file writes it.
+    pub scheme: &'static str,
+    /// How the time step is chosen.
+    pub stepping: Stepping,
+    /// The largest Courant number that the scheme allows.
+    pub max_courant: f64,
+    /// What ends the run.
+    pub ends: Ends,
+    /// When the state is written.
+    pub frames: Frames,
+    /// The kinds of files to write.
+    pub files: Vec<FileKind>,
+    /// Precision of the numbers in the files.
+    pub precision: Precision,
+    /// What is allowed but may surprise, one sentence each.
+    pub notes: Vec<String>,
+    /// Where the case was read from.
+    pub(crate) source: Source,
+}
+
+impl RunPlan {
+    /// The text of the case file, with the overrides as comment lines at the end.
+    #[must_use]
+    pub fn text(&self) -> String {
+        self.source.text()
+    }
+
+    /// The case as one TOML document that computes the same: the file's own text where there are no overrides, else
+    /// its tables with the overrides laid in. Paths are relative to the folder of the case file.
+    #[must_use]
+    pub fn resolved(&self) -> String {
+        self.source.resolved()
+    }
+
+    /// Name of the file the case was read from.
+    #[must_use]
+    pub fn source_name(&self) -> &str {
+        self.source.name()
+    }
+
+    /// A path of the case, seen from the folder of the case file.
+    #[must_use]
+    pub fn locate(&self, path: &Path) -> PathBuf {
+        self.source.folder().join(path)
+    }
+
+    /// An error at a key of the case, for what shows only later (a raster without a CRS, a missing attribute).
+    #[must_use]
+    pub fn fault(&self, key: &str, message: impl Into<String>, cure: &str) -> CaseError {
+        self.source.fault(key, message).help(cure)
+    }
+}
+
+/// What ends a run; the first that is reached does.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Ends {
+    /// Number of steps.
+    pub steps: Option<u64>,
+    /// Simulated time.
+    pub time: Option<f64>,
+    /// A state to wait for.
+    pub until: Option<Until>,
+    /// Share of the peak kinetic energy below which the run ends.
+    pub kinetic_energy: Option<f64>,
+}
+
+impl Ends {
+    /// A note on a run that steps until something happens, if it may never.
+    pub(crate) fn note(&self) -> Option<String> {
+        let limited = self.time.is_some() || self.steps.is_some() || self.until == Some(Until::Equilibrium);
+        (!limited).then(|| "the run has no time limit; time.end sets one".to_owned())
+    }
+}
+
+/// The state a run waits for.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Until {
+    /// Nothing moves.
+    Rest {
+        /// Speed below which the mass counts as resting too.
+        speed: Option<f64>,
+    },
+    /// Nothing changes faster than `rate`.
+    Steady {
+        /// Bound on the rates of change.
+        rate: f64,
+    },
+    /// The equilibrium, computed without stepping.
+    Equilibrium,
+}
+
+/// How the time step is chosen.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Stepping {
+    /// Always this step.
+    Fixed(f64),
+    /// The step that this Courant number allows.
+    Courant(f64),
+}
+
+/// When the state is written; the first and the last instant always are.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Frames {
+    /// Every so much simulated time.
+    Every(f64),
+    /// Every so many steps.
+    Steps(u64),
+    /// At the start and at the end only, since the end is not known beforehand.
+    Ends,
+}

@@ -1,0 +1,42 @@
+//! Why a checked case gave no run.
+
+use granflow_case::CaseError;
+
+/// Why a run could not be set up.
+#[derive(Debug, thiserror::Error)]
+pub enum StartError {
+    /// The case itself is wrong.
+    #[error(transparent)]
+    Case(#[from] CaseError),
+    /// The terrain, or a raster of thicknesses, cannot be used.
+    #[cfg(feature = "geo")]
+    #[error(transparent)]
+    Raster(Box<granflow_geo::raster::RasterError>),
+    /// A release cannot be used.
+    #[cfg(feature = "geo")]
+    #[error(transparent)]
+    Release(Box<granflow_geo::release::ReleaseError>),
+    /// The numbers do not make a simulation.
+    #[error(transparent)]
+    Build(#[from] granflow_engine::simulation::BuildError),
+    /// The library was built without a feature that this case needs.
+    #[error("this needs granflow's feature `{feature}`: build with `--features {feature}`")]
+    Feature {
+        /// The feature.
+        feature: &'static str,
+    },
+}
+
+#[cfg(feature = "geo")]
+impl From<granflow_geo::raster::RasterError> for StartError {
+    fn from(error: granflow_geo::raster::RasterError) -> Self {
+        StartError::Raster(Box::new(error))
+    }
+}
+
+#[cfg(feature = "geo")]
+impl From<granflow_geo::release::ReleaseError> for StartError {
+    fn from(error: granflow_geo::release::ReleaseError) -> Self {
+        StartError::Release(Box::new(error))
+    }
+}
