@@ -10,8 +10,8 @@ pub trait Kernel<const D: usize>: Scheme<D, f64> {
     fn sweep(&self, sweep: &Sweep, output: Output);
 }
 
-/// The inner loops of a scheme in one number of dimensions, compiled by [`crate::kernel!`]: how a type of other crates, say
-/// `Balanced` with a friction law of your own, is stepped ([`crate::simulation::Simulation::with_loops`]).
+/// The inner loops of a scheme in D dimensions, compiled by [`crate::kernel!`]: how a type of other crates, say `Balanced`
+/// with a friction law of your own, is stepped ([`crate::simulation::Simulation::with_loops`]).
 pub struct Loops<const D: usize, S>(fn(&S, &Sweep, Output));
 
 impl<const D: usize, S> Clone for Loops<D, S> {
@@ -38,18 +38,18 @@ impl<const D: usize, S> Loops<D, S> {
     }
 }
 
-/// Compile the inner loops of a scheme, so that [`crate::simulation::Simulation`] can step it: once for each number of dimensions
-/// and for each set of instructions (none, AVX2, AVX-512, NEON), in a module of this name.
+/// Compile the inner loops of a scheme, so that [`crate::simulation::Simulation`] can step it: for one dimension and two, or
+/// for the one that is named, and for each set of instructions (none, AVX2, AVX-512, NEON), in a module of this name.
 ///
 /// ```ignore
 /// kernel!(burgers: Burgers);       // `Burgers` is `Scheme<D, R>` for any D and R
-/// kernel!(burgers: Burgers, 2);  // ... for D = 2 alone
+/// kernel!(burgers: Burgers, 2);    // ... for D = 2 alone
 /// kernel!(mine: const LOOPS = Balanced<MyLaw, Chute<2, f64>>, 2);  // of a type that belongs to another crate: `Loops`
 /// ```
 ///
-/// Everything that a scheme does on lanes must be inlined whole: give its functions `#[inline(always)]`, and write loops over axes
-/// with [`granflow_model::real::per_axis`] and [`granflow_model::real::for_axis`] instead of `map` and `from_fn`. A function that stays one is still
-/// right, but slow. `crates/granflow-engine/tests/own_scheme.rs` has schemes of its own.
+/// Everything that a scheme does on lanes must be inlined whole: give its functions `#[inline(always)]`, and write loops
+/// over axes with [`granflow_model::real::per_axis`] and [`granflow_model::real::for_axis`] instead of `map` and `from_fn`.
+/// A function that is left as a call is still right, but slow. `crates/granflow-engine/tests/own_scheme.rs` has schemes of its own.
 #[macro_export]
 macro_rules! kernel {
     ($module:ident: const $name:ident = $scheme:ty, $dimensions:literal) => {

@@ -295,13 +295,13 @@ pub fn total<const D: usize, R: Real>(values: [R; D]) -> R {
 /// The largest of a few numbers.
 #[inline(always)]
 pub fn largest<const D: usize, R: Real>(values: [R; D]) -> R {
-    let mut most = values[0];
+    let mut largest = values[0];
     for_axis!(axis in D => {
         if axis > 0 {
-            most = most.max(values[axis]);
+            largest = largest.max(values[axis]);
         }
     });
-    most
+    largest
 }
 
 /// A sum that keeps what rounding drops (Neumaier 1974).

@@ -231,13 +231,13 @@ pub trait Scheme<const D: usize, R: Real>: Copy + Send + Sync {
         0.9 * self.max_courant()
     }
 
-    /// Let `work` have the same scheme on another scalar: states, grounds and forcings of the same
+    /// Let `visitor` have the same scheme on another scalar: states, grounds and forcings of the same
     /// components in the same order.
     fn with_scalar<L: Real, V: SchemeVisitor<D, L>>(&self, visitor: V) -> V::Output;
 
     /// What follows from a cell alone: the place for divisions and roots, which are computed ahead of what waits for them.
     fn primitives(&self, here: &Cell<Self::State, Self::Ground, Self::Forcing>) -> Self::Primitives;
-    /// What the cell in the middle of the window offers to its faces and corners.
+    /// What the cell in the middle of the stencil offers to its faces and corners.
     fn reconstruct(
         &self,
         stencil: &impl Stencil<D, R, Self::State, Self::Ground, Self::Forcing>,
@@ -248,7 +248,7 @@ pub trait Scheme<const D: usize, R: Real>: Copy + Send + Sync {
     /// What is found at a corner: `around[y][x]` are the cells below and above it, left and right of it; in one dimension
     /// the corner is the face, and both rows are the same.
     fn corner(&self, around: [[&Self::FaceStates; 2]; 2]) -> Self::Corner;
-    /// The state after `dt` of the cell in the middle of the window; `corners[y][x]` are the cell's lower and upper ones,
+    /// The state after `dt` of the cell in the middle of the stencil; `corners[y][x]` are the cell's lower and upper ones,
     /// left and right.
     fn update(
         &self,

@@ -133,7 +133,7 @@ impl<const D: usize, S: Scheme<D, f64>> Simulation<D, S> {
         let now = laid_out::<D, S::State>(&layout, initial);
         let (tiles, across) = cut(&layout);
         let tracked = tracked::<D, S>();
-        let mut simulation = Simulation {
+        Ok(Simulation {
             spacing: Spacing::new(grid.size),
             next: now.clone(),
             stats: vec![TileStats::NONE; tiles.len()],
@@ -175,10 +175,15 @@ impl<const D: usize, S: Scheme<D, f64>> Simulation<D, S> {
             across,
             outlets: Vec::new(),
             simd: SimdLevel::Best,
-        };
-        simulation.rebuild_ground_cache();
-        simulation.rescan();
-        Ok(simulation)
+        }
+        .scanned())
+    }
+
+    /// With everything that follows from the grounds and the state.
+    fn scanned(mut self) -> Self {
+        self.rebuild_ground_cache();
+        self.rescan();
+        self
     }
 
     /// Compute with these instructions; changes no result, only what it costs.

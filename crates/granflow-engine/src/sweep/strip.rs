@@ -46,8 +46,8 @@ pub(super) struct Targets<'a> {
     pub maps: Option<[DisjointSlice<'a, f32>; 4]>,
 }
 
-/// Tiles under way, on ground and under a forcing that are everywhere the same (`UNIFORM`) or not. All by value: a number behind a reference would
-/// have to be read again after every number that the inner loop writes.
+/// Tiles under way, on ground and under a forcing that are everywhere the same (`UNIFORM`) or not. All by value: a number
+/// behind a reference would have to be read again after every number that the inner loop writes.
 struct Strip<'a, const D: usize, const UNIFORM: bool, L: SimdVector, T: Scheme<D, L>> {
     layout: Layout,
     scheme: T,

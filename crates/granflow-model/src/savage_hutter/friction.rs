@@ -15,8 +15,8 @@ pub struct Resistance<R> {
 
 /// A friction law.
 pub trait Friction: Copy + Send + Sync + 'static {
-    /// Resistance of a mass of `thickness` (normal to the bed) at a speed along the bed of which `speed_squared` is the speed_squared,
-    /// under the normal acceleration `load` in motion and `weight` at rest.
+    /// Resistance of a mass of `thickness` (normal to the bed) under the normal acceleration `load` in motion and
+    /// `weight` at rest; `speed_squared` is the square of the speed along the bed.
     fn resistance<R: Real>(&self, thickness: R, speed_squared: R, load: R, weight: R) -> Resistance<R>;
 }
 
@@ -29,7 +29,7 @@ pub struct Coulomb {
 
 impl Friction for Coulomb {
     #[inline(always)]
-    fn resistance<R: Real>(&self, _thickness: R, _square: R, load: R, weight: R) -> Resistance<R> {
+    fn resistance<R: Real>(&self, _thickness: R, _speed_squared: R, load: R, weight: R) -> Resistance<R> {
         let mu = R::splat(self.mu);
         Resistance { dry: mu * load, drag: R::zero(), holding: mu * weight }
     }

@@ -188,6 +188,36 @@ impl Kinetic {
         Self::sum(axis, Self::halves_at(h, q, per_axis!(side => cells[side].ground.beta)), u)
     }
 
+    /// g~: the static force per mass, tilt plus the excess cut to the disc of radius R.
+    #[inline(always)]
+    fn static_force<const D: usize, R: Real>(
+        near: &Neighbours<D, R, Flow<D, R>, Chute<D, R>>,
+        bound: R,
+    ) -> [R; D] {
+        let by_neighbours = Self::excess(near);
+        let excess = dot(by_neighbours, by_neighbours).sqrt();
+        let over = bound.lt(excess);
+        let one = R::splat(1.0);
+        let cut = R::select(over, bound / R::select(over, excess, one), one);
+        per_axis!(k => near.here.ground.tilt[k] + by_neighbours[k] * cut)
+    }
+
+    /// The depth along each axis that the static force pulls at.
+    #[inline(always)]
+    fn static_depth<const D: usize, R: Real>(
+        &self,
+        near: &Neighbours<D, R, Flow<D, R>, Chute<D, R>>,
+        resting_h: R,
+    ) -> [R; D] {
+        let h = near.here.state.h;
+        match self.variant.static_depth {
+            StaticDepth::New => [resting_h; D],
+            StaticDepth::Smoothed => per_axis!(k => {
+                ((near.lo[k].state.h + near.hi[k].state.h) + (h + h)) * R::splat(0.25)
+            }),
+        }
+    }
+
     /// beta D h - tilt per axis: the pull that friction must hold, as an acceleration.
     #[inline(always)]
     fn excess<const D: usize, R: Real>(near: &Neighbours<D, R, Flow<D, R>, Chute<D, R>>) -> [R; D] {
@@ -286,8 +316,8 @@ impl<const D: usize, R: Real> Scheme<D, R> for Kinetic {
             RestTest::Still => still,
             // |q| < dt |g| h
             RestTest::Slow => {
-                let most = dt * moving_h;
-                still | (zero.lt(most) & (size * size).lt(square * (most * most)))
+                let limit = dt * moving_h;
+                still | (zero.lt(limit) & (size * size).lt(square * (limit * limit)))
             }
         };
         let moved = Flow { h: moving_h, q: per_axis!(k => q[k] - moving.q[k] + dt * g[k] * moving_h) };
@@ -301,22 +331,12 @@ impl<const D: usize, R: Real> Scheme<D, R> for Kinetic {
             divergence(&self.resting_faces(&near), lambda)
         };
         let resting_h = normal(h - resting.h);
-        // g~: the static force per mass, tilt plus the excess cut to the disc of radius R
-        let by_neighbours = Self::excess(&near);
-        let excess = dot(by_neighbours, by_neighbours).sqrt();
-        let over = bound.lt(excess);
-        let cut = R::select(over, bound / R::select(over, excess, one), one);
-        let held: [R; D] = per_axis!(k => ground.tilt[k] + by_neighbours[k] * cut);
+        let held = Self::static_force(&near, bound);
         // 1 - mu with mu = -q.g/(dt |g|^2 h^{n+1}); q = 0 is rest in words
         let weight = dt * square * moving_h;
         let no_weight = weight.equals(zero) | still;
         let blend = one + R::select(no_weight, zero, dot(q, g) / R::select(no_weight, one, weight));
-        let static_depth = match self.variant.static_depth {
-            StaticDepth::New => [resting_h; D],
-            StaticDepth::Smoothed => per_axis!(k => {
-                ((near.lo[k].state.h + near.hi[k].state.h) + (h + h)) * R::splat(0.25)
-            }),
-        };
+        let static_depth = self.static_depth(&near, resting_h);
         Flow {
             h: R::select(rests, resting_h, moving_h),
             q: per_axis!(k => {

@@ -167,11 +167,9 @@ impl<const D: usize> Slope<'_, D> {
         opened.into_iter().map(|(place, ..)| place).collect()
     }
 
-    /// Solve for v: what leaves a cell is what enters it and what is poured on it.
-    pub(super) fn carry(&self) -> Result<Rolling<D>, Unsteady<D>> {
+    /// How many neighbours of each cell send sand into it.
+    fn waits(&self, faces: &[[Face; D]]) -> Vec<u8> {
         let table = self.table;
-        let mut faces = self.faces();
-        let opened = self.open_crests(&mut faces);
         let mut waits = vec![0_u8; table.size()];
         for place in 0..table.size() {
             for (axis, face) in faces[place].iter().enumerate() {
@@ -184,7 +182,16 @@ impl<const D: usize> Slope<'_, D> {
                 }
             }
         }
-        let most = self.source.iter().map(|f| f.iter().sum::<f64>()).fold(0.0, f64::max);
+        waits
+    }
+
+    /// Solve for v: what leaves a cell is what enters it and what is poured on it.
+    pub(super) fn carry(&self) -> Result<Rolling<D>, Unsteady<D>> {
+        let table = self.table;
+        let mut faces = self.faces();
+        let opened = self.open_crests(&mut faces);
+        let mut waits = self.waits(&faces);
+        let largest = self.source.iter().map(|f| f.iter().sum::<f64>()).fold(0.0, f64::max);
         let mut v = vec![0.0; table.size()];
         let cell = |v: &[f64], place: usize| -> Result<f64, Unsteady<D>> {
             let mut enters = 0.0;
@@ -198,7 +205,7 @@ impl<const D: usize> Slope<'_, D> {
                 let poured = self.source[place][axis] + (hi.poured - lo.poured) * per;
                 enters += (from_below + from_above) * per + poured;
             }
-            if enters.abs() <= ROUNDING * most {
+            if enters.abs() <= ROUNDING * largest {
                 return Ok(0.0);
             }
             let leaves = self.leaves(&faces, place);

@@ -73,18 +73,18 @@ pub(super) fn corner<const D: usize, R: Real, S: CellSlopes<D, R>>(
         rim = rim + (around[0][x].place.code + around[1][x].place.code);
     });
     let plain = !R::any(!rim.equals(zero));
-    let mut most = R::splat(f64::NEG_INFINITY);
+    let mut largest = R::splat(f64::NEG_INFINITY);
     for_axis!(y in TWO => {
         for_axis!(x in TWO => {
             let cell = around[y][x];
             let slope = if D > 1 { length(steep[0][x], steep[1][y]) } else { steep[0][x] };
             let end = |place: usize| if place == 0 { End::Hi } else { End::Lo };
             let loss = cell.v_at_corner([end(x), end(y)]) * (slope - one);
-            let larger = most.max(loss);
-            most = if plain { larger } else { R::select(cell.place.inside(), larger, most) };
+            let larger = largest.max(loss);
+            largest = if plain { larger } else { R::select(cell.place.inside(), larger, largest) };
         });
     });
-    if plain { most } else { R::select(above_right.place.free(), most, zero) }
+    if plain { largest } else { R::select(above_right.place.free(), largest, zero) }
 }
 
 /// v_t of a cell: sum over axes of (H_hi - H_lo)/h + f + S, S the mean of G at the cell's nodes (eqs. 8, 44).

@@ -55,8 +55,8 @@ where
         // Most differences are below 0.9 c, without any root.
         let wide = (R::splat(0.81) * (beta + beta) * h.positive_part()).lt(du[axis] * du[axis]);
         if R::any(wide) {
-            let most = Self::max_slope(h, dh.abs(), u[axis].abs(), beta);
-            du[axis] = R::select(wide, du[axis].min(most).max(-most), du[axis]);
+            let limit = Self::max_slope(h, dh.abs(), u[axis].abs(), beta);
+            du[axis] = R::select(wide, du[axis].min(limit).max(-limit), du[axis]);
         }
         let slopes = SlopesOf::<D, R, ORDER>::by(dh, du);
         face_states.slopes[axis] = slopes;

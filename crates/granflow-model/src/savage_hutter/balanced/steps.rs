@@ -86,8 +86,8 @@ where
                 let mut held = ground.square(static_balance.pull).le(bound * bound) & still;
                 // A symmetric tower pulls nowhere, yet falls: bound the drop towards each neighbour too.
                 for_axis!(axis in D => {
-                    let most = bound * near.spacing.size[axis] * ground.stretch(axis);
-                    held = held & static_balance.drop[axis].le(most);
+                    let limit = bound * near.spacing.size[axis] * ground.stretch(axis);
+                    held = held & static_balance.drop[axis].le(limit);
                 });
                 face_states.class = face_states.class.held(held);
                 closed = closed | held;
@@ -164,14 +164,14 @@ where
         let (zero, per) = (R::zero(), spacing.inv);
         let Flow { h, q } = state;
         let lambda: [R; D] = per_axis!(axis => dt * per[axis]);
-        let gone: [R; D] = per_axis!(axis => lambda[axis] * (faces[axis].hi.mass - faces[axis].lo.mass));
-        let gone = total(gone);
+        let gone =
+            total::<D, R>(per_axis!(axis => lambda[axis] * (faces[axis].hi.mass - faces[axis].lo.mass)));
         let lost: [R; D] = per_axis!(k => {
             let lost: [R; D] = per_axis!(axis => lambda[axis] * (faces[axis].hi.left[k] - faces[axis].lo.right[k]));
             total(lost)
         });
-        let gates: [R; D] = per_axis!(axis => faces[axis].lo.class.code + faces[axis].hi.class.code);
-        let open = total(gates).equals(zero);
+        let classes = total::<D, R>(per_axis!(axis => faces[axis].lo.class.code + faces[axis].hi.class.code));
+        let open = classes.equals(zero);
         let all_open = !R::any(!open);
         let mut at_rest_or_dry = None;
         if !all_open {
@@ -202,8 +202,7 @@ where
             moved[k] = moved[k] + dt * depth * pull[k];
         });
 
-        let moved = Moved { h: new, depth, q: moved };
-        let slowed = self.slow(&bed, &state, moved, face_states.u, per, dt);
+        let slowed = self.slow(&bed, &state, Moved { h: new, depth, q: moved }, face_states.u, per, dt);
         match at_rest_or_dry {
             None => Flow { h: new, q: slowed },
             Some(at_rest_or_dry) => Flow {
