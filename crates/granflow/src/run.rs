@@ -78,7 +78,7 @@ pub trait Run: Send + Sync {
 
     /// The maps of the state as it stands, beyond peaks and times.
     fn maps(&mut self) -> Maps;
-    /// The maps of peaks and times so far.
+    /// The maps of peaks and times so far that the model has a quantity for.
     fn peaks(&self) -> Maps;
     /// The maps of peaks and times. The fields of the run are freed first, and the maps copied one by one, so that this takes
     /// little memory.

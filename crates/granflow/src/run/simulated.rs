@@ -217,10 +217,14 @@ impl<const D: usize, P: Physics<D>> Run for Simulated<D, P> {
     fn peaks(&self) -> Maps {
         let (layout, maps) = (self.simulation.layout(), self.simulation.maps());
         let named = maps.into_iter().flat_map(granflow_engine::Maps::named);
-        named.map(|(name, map)| (name, layout.unpadded(map))).collect()
+        let known = named.filter(|(name, _)| self.plane.model().quantity(name).is_some());
+        known.map(|(name, map)| (name, layout.unpadded(map))).collect()
     }
     fn into_peaks(self: Box<Self>) -> Maps {
-        self.simulation.into_maps()
+        let Simulated { simulation, plane, .. } = *self;
+        let mut maps = simulation.into_maps();
+        maps.retain(|(name, _)| plane.model().quantity(name).is_some());
+        maps
     }
     fn place(&self) -> Plane {
         self.plane.clone().with_bed(|| self.physics.elevation(&self.simulation))
