@@ -43,7 +43,6 @@ pub(crate) fn describe(run: &RunPlan, kind: Kind) -> Result<Vec<Line>, StartErro
 
 /// The runs to measure by, of all models.
 #[cfg(all(feature = "geo", feature = "threads"))]
-#[must_use]
 pub fn setups() -> impl Iterator<Item = &'static Setup> + Clone {
     savage_hutter::run::speed::SETUPS.iter().chain(hadeler_kuttler::run::speed::SETUPS)
 }

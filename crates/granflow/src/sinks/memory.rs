@@ -49,7 +49,7 @@ impl Memory {
     pub fn begin(run: &mut dyn Run, frames: Frames, names: &[&str]) -> Memory {
         let series = run.plane().series();
         let known = |name: &&str| series.iter().any(|field| field.name == **name);
-        assert!(names.iter().all(|name| known(name)), "the run has no such field among {names:?}");
+        assert!(names.iter().all(known), "the run has no such field among {names:?}");
         let kept =
             series.iter().enumerate().filter(|(_, f)| names.is_empty() || names.contains(&f.name.as_str()));
         let kept: Vec<_> = kept.map(|(k, field)| (k, field.length)).collect();

@@ -1,7 +1,6 @@
 //! A run on disk: what of it goes into `checkpoint/state.bin`, and back.
 
 use super::BeginError;
-use crate::output;
 use crate::output::checkpoint::{Checkpoint, Numbers, case_hash};
 use crate::run::{Record, Run, Saved};
 use granflow_case::RunPlan;
@@ -46,7 +45,7 @@ pub(super) struct Taken {
 
 /// Read a checkpoint of the case for a run of the same kind.
 pub(super) fn read(path: &Path, plan: &RunPlan, run: &dyn Run) -> Result<Taken, BeginError> {
-    let mut saved = Checkpoint::read(path, &case_hash(&plan.text())).map_err(output::Error::from)?;
+    let mut saved = Checkpoint::read(path, &case_hash(&plan.text()))?;
     let scalar = |name: &str| saved.scalar(name).unwrap_or(0.0);
     let kept = |name: &str| saved.scalar(name).unwrap_or(saved.time);
     let now = run.save();
