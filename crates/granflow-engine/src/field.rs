@@ -176,7 +176,7 @@ fn copy<T: Copy + Default>(part: &[T]) -> Vec<T> {
 /// are on as many small pages as there are rows and arrays.
 pub(crate) fn zeros<T: Copy + Default>(len: usize) -> Vec<T> {
     let numbers = vec![T::default(); len];
-    #[cfg(target_os = "linux")]
+    #[cfg(all(target_os = "linux", not(miri)))]
     {
         const PAGE: usize = 4096;
         let (start, bytes) = (numbers.as_ptr() as usize, size_of_val(numbers.as_slice()));
