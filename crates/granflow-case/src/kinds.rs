@@ -171,6 +171,11 @@ impl About {
         for other in KINDS.iter().map(|kind| &kind.about).filter(|other| other.model != model) {
             let foreign = |key: &&&str| source.has(key) && !self.keys.contains(key);
             if let Some(key) = other.keys.iter().find(foreign) {
+                // Where the model is not named, a misspelt `model` may be what is wrong.
+                let every = || KINDS.iter().flat_map(|kind| (kind.tables)()).collect::<Vec<_>>();
+                if let Some(error) = (!source.has("model")).then(|| source.unknown(&every())).flatten() {
+                    return Err(error);
+                }
                 let message = format!("`{key}` belongs to the model {}", other.model);
                 let cure = format!("remove it, or write model = \"{}\"", other.model);
                 return Err(source.fault(key, message).help(cure));

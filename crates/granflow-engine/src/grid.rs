@@ -69,6 +69,10 @@ impl Layout {
             margin: if D > 1 { GHOSTS } else { 0 },
         }
     }
+    /// Is it that of a grid of so many dimensions?
+    pub(crate) fn fits(&self, dimensions: usize) -> bool {
+        if dimensions > 1 { self.margin == GHOSTS } else { self.margin == 0 && self.rows == 1 }
+    }
     /// Numbers in one padded array.
     pub fn len(&self) -> usize {
         self.stride * (self.rows + 2 * self.margin) + PADDING

@@ -24,10 +24,15 @@ impl Sweep<'_> {
         const {
             let masks = <S::State as Components<f64>>::F32_MASK | <S::State as Components<f64>>::UNIFORM_MASK;
             assert!(masks == 0, "a state is kept in double precision in every cell");
+            assert!(
+                <S::Forcing as Components<f64>>::UNIFORM_MASK == 0,
+                "a forcing is kept in every cell: UNIFORM_MASK is for grounds"
+            );
         }
         let Output { to, maps, stats, changes } = output;
         let tracked = tracked::<D, S>();
-        // The inner loops trust these lengths.
+        // The inner loops trust the shape and these lengths.
+        assert!(self.layout.fits(D), "loops for {D} dimensions on a grid of another");
         assert!(to.holds::<S::State>(&self.layout) && self.from.holds::<S::State>(&self.layout));
         assert!(self.grounds.holds::<S::Ground>(&self.layout));
         assert!(self.forcings.holds::<S::Forcing>(&self.layout));

@@ -1,10 +1,13 @@
 //! Tiles: the rectangles of cells that are computed or sleep as one.
 
-use crate::grid::Layout;
+use crate::grid::{GHOSTS, Layout};
 use std::ops::Range;
 
 /// The most cells side by side that are computed in one go, with the neighbour at each end.
 pub(crate) const STRIP: usize = 128;
+
+/// The most stages of a step: each reaches [`GHOSTS`] cells further, and a signal must not pass a tile in one step.
+pub(crate) const MAX_STAGES: usize = 6 / GHOSTS;
 
 /// Largest extent of a tile along x and y. Half of it is at least 6, the reach of a two-stage step: so small may tiles be that
 /// a grid is cut into.

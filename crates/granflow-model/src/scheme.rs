@@ -268,7 +268,8 @@ pub trait Scheme<const D: usize, R: Real>: Copy + Send + Sync {
         *forcing
     }
     /// sum over axes of (fastest signal)/dx: the Courant condition is dt times this <= courant; finite in every finite state, for
-    /// a run ends where it is not. \[1/time\]
+    /// a run ends where it is not. It must not depend on the forcing: a changed one is not asked for its rate before the next
+    /// step. \[1/time\]
     fn rate(&self, here: &Cell<Self::State, Self::Ground, Self::Forcing>, spacing: &Spacing<D, R>) -> R;
     /// keep * old + (1 - keep) * new, without undoing an exact stop of `new`.
     fn rk_combine(&self, keep: R, old: &Self::State, new: &Self::State) -> Self::State;

@@ -31,11 +31,16 @@
 //! # A case file
 //!
 //! ```no_run
-//! let mut run = granflow::Case::read("silo.toml")?.check()?.start()?;
+//! let case = granflow::Case::read("silo.toml")?.check()?;
+//! let end = case.plan().ends.time.unwrap_or(10.0); // the run itself goes on for as long as one steps it
+//! let mut run = case.start()?;
 //! let mut frames = run.frames(0.5);
 //! while let Some(run) = frames.next()? {
 //!     let thickness = run.field("thickness").expect("an avalanche has one"); // no copy
 //!     println!("t = {}: {} at the first cell", run.time(), thickness.at(0, 0));
+//!     if run.time() >= end {
+//!         break; // some schemes never rest
+//!     }
 //! }
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```

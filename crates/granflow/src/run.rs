@@ -12,6 +12,7 @@ mod record;
 mod saved;
 mod simulated;
 mod sink;
+mod step_size;
 
 pub use crate::entry::{Entry, sum};
 pub use crate::stop_reason::StopReason;
@@ -19,13 +20,14 @@ pub use drive::{DriveError, drive};
 pub use entry::mass_error;
 pub use field_view::FieldView;
 pub use frames::Frames;
-pub(crate) use frames::after;
+pub(crate) use frames::{after, half_step};
 pub use granflow_case::{Ends, Until};
 pub use granflow_engine::simulation::{Failure, Totals};
 pub use record::Record;
 pub use saved::Saved;
 pub use simulated::{CellOf, Field, Numbers, Physics, Simulated, Value};
 pub use sink::{Sink, SinkError};
+pub(crate) use step_size::step_size;
 
 pub use crate::model::Maps;
 use crate::model::Plane;
@@ -104,16 +106,18 @@ pub trait Run: Send + Sync {
     fn steps(&self) -> u64 {
         self.stepper().steps()
     }
-    /// Every cell rests by the scheme's proof and the last step changed nothing, or nothing could send a signal: nothing will
-    /// ever move.
-    fn at_rest(&self) -> bool {
-        self.stepper().at_rest() || self.stepper().rate() == 0.0
-    }
-    /// Step until time `time`.
+    /// Every cell rests by the scheme's proof and the last step changed nothing, or nothing could send a signal, and nothing
+    /// from outside is still to come: nothing will ever move.
+    fn at_rest(&self) -> bool;
+    /// Step until time `time`; a step that would go beyond is cut there, a fixed one too.
     ///
     /// # Errors
     /// [`Failure`] of the first step that cannot be taken.
+    ///
+    /// # Panics
+    /// If `time` is not a number.
     fn until(&mut self, time: f64) -> Result<(), Failure> {
+        assert!(!time.is_nan(), "the time to step to is not a number");
         while self.time() < time && self.step(time)?.is_finite() {}
         Ok(())
     }
@@ -121,7 +125,11 @@ pub trait Run: Send + Sync {
     ///
     /// # Errors
     /// [`Failure`] of the first step that cannot be taken.
+    ///
+    /// # Panics
+    /// If `limit` is not a number.
     fn to_rest(&mut self, limit: f64) -> Result<bool, Failure> {
+        assert!(!limit.is_nan(), "the time to step to is not a number");
         while !self.at_rest() && self.time() < limit && self.step(limit)?.is_finite() {}
         Ok(self.at_rest())
     }
@@ -129,6 +137,9 @@ pub trait Run: Send + Sync {
 
 impl dyn Run + '_ {
     /// The run at multiples of `every`, from its present state on: see [`Frames`].
+    ///
+    /// # Panics
+    /// If `every` is not positive.
     pub fn frames(&mut self, every: f64) -> Frames<'_> {
         Frames::new(self, every)
     }

@@ -271,6 +271,28 @@ fn a_run_that_rests_is_resumed_as_it_is_and_an_older_checkpoint_is_none() {
     assert!(!seen, "the checkpoint of the run before");
 }
 
+/// The energy that a run ends by is that of the state taken up, not of the start.
+#[test]
+fn an_end_by_energy_is_found_by_a_resumed_run_at_the_same_step() {
+    let folder = tempfile::tempdir().unwrap();
+    let text = r#"
+        grid.x = { from = -6.0, to = 6.0, cells = 60 }
+        material.friction.coulomb = { angle = "18 deg" }
+        initial.thickness.cap = { height = 1.0, radius = 2.0 }
+        time = { until = "rest", end = 50.0, stop.kinetic_energy = 0.05 }
+        output.files = ["netcdf"]
+        "#;
+    let case = case(text, folder.path());
+    let whole = begin(&case, &folder.path().join("whole"), false, &mut |_| false).unwrap().summary;
+    assert_eq!(whole.stop_reason, StopReason::KineticEnergy);
+    let parts = folder.path().join("parts");
+    let broken = begin(&case, &parts, false, &mut |run| run.steps() >= whole.steps / 2).unwrap().summary;
+    assert_eq!(broken.stop_reason, StopReason::Interrupted);
+    let resumed = begin(&case, &parts, true, &mut |_| false).unwrap().summary;
+    assert_eq!((resumed.stop_reason, resumed.steps), (whole.stop_reason, whole.steps));
+    assert_eq!(resumed.time.to_bits(), whole.time.to_bits());
+}
+
 /// A sink in memory and the files of a run share one piece of code: the same bytes come out.
 #[test]
 fn series_in_memory_make_the_file_that_series_on_disk_make() {

@@ -1,7 +1,7 @@
 //! A run one can hold: memory, views, save and restore, frames, all without a disk.
 
 use granflow::Case;
-use granflow::build::{Avalanche, Grid};
+use granflow::build::{Avalanche, Grid, Sandpile, Table};
 use granflow::case::Frames;
 use granflow::run::{Ends, Run, Until, drive};
 use granflow::sinks::{Callback, Memory};
@@ -132,4 +132,83 @@ time = { until = "rest", end = 50.0 }
     let (mut built, mut read) = (built.unwrap(), start(case));
     assert!(built.to_rest(50.0).unwrap() && read.to_rest(50.0).unwrap());
     assert!(bits(&*built) == bits(&*read));
+}
+
+const SWITCHED: &str = r#"
+model = "hadeler_kuttler"
+grid = { x = { from = 0.0, to = 1.0, cells = 20 } }
+source = [{ rate = 0.5, from = 0.25, to = 1.0 }]
+time.end = 3.0
+"#;
+
+#[test]
+fn a_run_put_back_pours_what_its_time_asks_for() {
+    let mut run = start(SWITCHED);
+    run.until(0.5).unwrap();
+    let saved = run.save().into_owned();
+    run.until(2.0).unwrap();
+    let (poured, state) = (run.stepper().poured(), bits(&*run));
+    run.restore(saved).unwrap();
+    run.until(2.0).unwrap();
+    assert_eq!(run.stepper().poured(), poured);
+    assert!(bits(&*run) == state);
+}
+
+#[test]
+fn nothing_is_at_rest_before_its_last_source() {
+    let mut run = start(SWITCHED);
+    assert!(!run.to_rest(0.2).unwrap() && run.time() == 0.2);
+    run.until(0.6).unwrap();
+    assert!(run.stepper().poured() > 0.0);
+}
+
+#[test]
+fn a_sink_goes_on_where_a_run_was_stepped_past_its_instant() {
+    let mut run = start(SLIDE);
+    let mut memory = Memory::begin(&mut *run, Frames::Every(0.25), &["thickness"]);
+    run.until(0.9).unwrap();
+    let ends = Ends { steps: None, time: Some(1.5), until: None, kinetic_energy: None };
+    drive(&mut *run, &ends, &mut [&mut memory]).unwrap();
+    let times = memory.finish(&mut *run).times;
+    assert!(times.len() > 3 && times.is_sorted() && times.last() == Some(&1.5), "{times:?}");
+}
+
+#[test]
+fn fixed_steps_are_not_cut_for_frames() {
+    let text = r#"
+    grid.x = { from = -6.0, to = 6.0, cells = 60 }
+    material.friction.coulomb = { angle = "18 deg" }
+    initial.thickness.cap = { height = 1.0, radius = 2.0 }
+    scheme = { name = "verfahren_5", step = 0.003 }
+    time.end = 1.0
+    "#;
+    let mut run = start(text);
+    let mut frames = run.frames(0.05);
+    let mut times = Vec::new();
+    while let Some(run) = frames.next().unwrap() {
+        times.push((run.time(), run.steps()));
+        if run.time() > 0.5 {
+            break;
+        }
+    }
+    assert!(times.iter().all(|(time, steps)| (time - 0.003 * *steps as f64).abs() < 1e-12), "{times:?}");
+    assert!(times.iter().enumerate().all(|(k, (time, _))| (time - 0.05 * k as f64).abs() <= 0.0015 + 1e-12));
+}
+
+#[test]
+fn a_builder_refuses_what_a_case_refuses() {
+    let slide = || Avalanche::on_plane(Grid::line([-1.0, 1.0], 10), 0.1);
+    for (wrong, part) in [
+        (slide().thickness(|_| -1.0).start(), "thickness is -1"),
+        (slide().thickness(|_| f64::NAN).start(), "thickness is NaN"),
+        (slide().mu(-1.0).start(), "friction"),
+        (slide().mu(f64::NAN).start(), "friction"),
+        (
+            Sandpile::on(Table::rectangle([10], [[true; 2]]), [0.1]).source(|_| -1.0).start(),
+            "rate of the source is -1",
+        ),
+    ] {
+        let error = wrong.err().expect("it is out of range").to_string();
+        assert!(error.contains(part), "{error}");
+    }
 }

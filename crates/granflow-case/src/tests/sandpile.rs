@@ -484,3 +484,11 @@ fn an_avalanche_has_no_table() {
     assert!(silo("time.until=steady").to_string().contains("write until = \"rest\""));
     assert!(silo("initial={}").to_string().contains("`thickness` is missing"));
 }
+
+#[test]
+fn a_misspelt_model_is_not_answered_as_if_the_table_were_foreign() {
+    let text =
+        "modeel = \"hadeler_kuttler\"\ngrid.x = { from = 0.0, to = 1.0, cells = 4 }\ntable.height = 0.0\n";
+    let error = Case::parse(text, "case.toml").unwrap_err().to_string();
+    assert!(error.contains("unknown key `modeel`") && error.contains("did you mean `model`?"), "{error}");
+}

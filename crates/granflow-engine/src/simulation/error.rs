@@ -2,6 +2,7 @@
 
 use super::step_size::StepSize;
 use crate::grid::Grid;
+use crate::tiles::MAX_STAGES;
 
 /// Why a simulation cannot be made.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -32,6 +33,22 @@ pub enum BuildError {
         /// The largest one: [`granflow_model::scheme::Scheme::max_courant`].
         max: f64,
     },
+    /// A step has more stages than sleeping tiles allow for.
+    Stages {
+        /// How many stages it has.
+        stages: usize,
+        /// The largest number.
+        max: usize,
+    },
+    /// What a builder was given is out of range.
+    Value {
+        /// What it is.
+        name: &'static str,
+        /// The value found.
+        value: f64,
+        /// What it may be.
+        allowed: &'static str,
+    },
 }
 
 impl core::fmt::Display for BuildError {
@@ -52,6 +69,10 @@ impl core::fmt::Display for BuildError {
             Self::Courant { courant, max } => {
                 write!(f, "the Courant number is {courant}: the scheme takes numbers above 0 and up to {max}")
             }
+            Self::Stages { stages, max } => {
+                write!(f, "a step of the scheme has {stages} stages: this engine takes up to {max}")
+            }
+            Self::Value { name, value, allowed } => write!(f, "the {name} is {value}: give {allowed}"),
         }
     }
 }
@@ -63,6 +84,7 @@ pub(super) fn check<const D: usize>(
     grid: &Grid<D>,
     step_size: StepSize,
     max_courant: f64,
+    stages: usize,
 ) -> Result<(), BuildError> {
     /// Bytes that can be addressed, less room for ghosts and for several numbers in each cell.
     const MOST: usize = isize::MAX as usize >> 7;
@@ -76,6 +98,9 @@ pub(super) fn check<const D: usize>(
         if !valid(size) {
             return Err(BuildError::Size { axis, size });
         }
+    }
+    if stages > MAX_STAGES {
+        return Err(BuildError::Stages { stages, max: MAX_STAGES });
     }
     match step_size {
         StepSize::Fixed(dt) if !valid(dt) => Err(BuildError::Step { dt }),
@@ -151,20 +176,24 @@ mod tests {
         let grid = |cells, size| Grid { cells, origin: [0.0; 2], size, boundary: [[Boundary::Open; 2]; 2] };
         let good = grid([3, 2], [0.5; 2]);
         let step = StepSize::Courant(0.5);
-        assert_eq!(check(&good, step, 0.5), Ok(()));
-        assert_eq!(check(&good, StepSize::Fixed(7.0), 0.5), Ok(()));
-        assert_eq!(check(&grid([3, 0], [0.5; 2]), step, 0.5), Err(BuildError::Cells { axis: 1, cells: 0 }));
+        assert_eq!(check(&good, step, 0.5, 2), Ok(()));
+        assert_eq!(check(&good, StepSize::Fixed(7.0), 0.5, 2), Ok(()));
+        assert_eq!(
+            check(&grid([3, 0], [0.5; 2]), step, 0.5, 2),
+            Err(BuildError::Cells { axis: 1, cells: 0 })
+        );
         let huge = 1 << (usize::BITS / 2);
-        assert!(matches!(check(&grid([huge; 2], [0.5; 2]), step, 0.5), Err(BuildError::Cells { .. })));
+        assert!(matches!(check(&grid([huge; 2], [0.5; 2]), step, 0.5, 2), Err(BuildError::Cells { .. })));
         for size in [0.0, -1.0, f64::NAN, f64::INFINITY] {
             assert!(matches!(
-                check(&grid([3, 2], [size, 0.5]), step, 0.5),
+                check(&grid([3, 2], [size, 0.5]), step, 0.5, 2),
                 Err(BuildError::Size { axis: 0, .. })
             ));
-            assert!(matches!(check(&good, StepSize::Fixed(size), 0.5), Err(BuildError::Step { .. })));
-            assert!(matches!(check(&good, StepSize::Courant(size), 0.5), Err(BuildError::Courant { .. })));
+            assert!(matches!(check(&good, StepSize::Fixed(size), 0.5, 2), Err(BuildError::Step { .. })));
+            assert!(matches!(check(&good, StepSize::Courant(size), 0.5, 2), Err(BuildError::Courant { .. })));
         }
-        let error = check(&good, StepSize::Courant(0.51), 0.5).unwrap_err();
+        assert_eq!(check(&good, step, 0.5, 3), Err(BuildError::Stages { stages: 3, max: 2 }));
+        let error = check(&good, StepSize::Courant(0.51), 0.5, 2).unwrap_err();
         assert_eq!(
             error.to_string(),
             "the Courant number is 0.51: the scheme takes numbers above 0 and up to 0.5"

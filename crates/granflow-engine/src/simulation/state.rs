@@ -126,7 +126,7 @@ impl<const D: usize, S: Scheme<D, f64>> Simulation<D, S> {
         ground: impl Fn([usize; D]) -> S::Ground + Sync,
         initial: impl Fn([usize; D]) -> S::State + Sync,
     ) -> Result<Self, BuildError> {
-        check(&grid, step_size, scheme.max_courant())?;
+        check(&grid, step_size, scheme.max_courant(), scheme.stages().len())?;
         let layout = Layout::of(&grid);
         let mut grounds = laid_out::<D, S::Ground>(&layout, ground);
         boundary::fill(&mut grounds, &grid, &layout, |axis, g| scheme.mirror_ground(axis, &g));

@@ -36,7 +36,9 @@ pub fn drive(run: &mut dyn Run, ends: &Ends, sinks: &mut [&mut dyn Sink]) -> Res
         if let Some(reason) = reached(run, ends, last) {
             return Ok(reason);
         }
-        let instant = sinks.iter().map(|sink| sink.next_instant()).fold(last, f64::min);
+        // An instant that has passed is shown after the next step, however short or long.
+        let instants = sinks.iter().map(|sink| sink.next_instant()).filter(|instant| *instant > run.time());
+        let instant = instants.fold(last, f64::min);
         let until = if run.stepper().is_adaptive() { instant } else { last };
         let time = run.time();
         let dt = run.step(until).map_err(|failure| DriveError::Step { failure, time })?;

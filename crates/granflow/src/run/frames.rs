@@ -3,7 +3,8 @@
 use super::{Failure, Run};
 
 /// The run at multiples of an interval, the present state first: `while let Some(run) = frames.next()? { .. }`. It ends when
-/// the run is at rest.
+/// the run is at rest; one that may never be needs a limit of its own. Adaptive steps end at the instants; fixed steps are
+/// never cut: shown is the one that comes nearest.
 pub struct Frames<'r> {
     run: &'r mut (dyn Run + 'r),
     every: f64,
@@ -12,6 +13,7 @@ pub struct Frames<'r> {
 
 impl<'r> Frames<'r> {
     pub(super) fn new(run: &'r mut (dyn Run + 'r), every: f64) -> Self {
+        assert!(every > 0.0, "the interval of the frames is {every}: give a number > 0");
         Frames { run, every, begun: false }
     }
 
@@ -25,8 +27,11 @@ impl<'r> Frames<'r> {
             if self.run.at_rest() {
                 return Ok(None);
             }
-            let next = after(self.run.time(), self.every);
-            while self.run.time() < next && !self.run.at_rest() && self.run.step(next)?.is_finite() {}
+            let early = half_step(self.run);
+            let next = after(self.run.time() + early, self.every);
+            let until = if self.run.stepper().is_adaptive() { next } else { f64::INFINITY };
+            while self.run.time() + early < next && !self.run.at_rest() && self.run.step(until)?.is_finite() {
+            }
         }
         Ok(Some(&mut *self.run))
     }
@@ -36,4 +41,10 @@ impl<'r> Frames<'r> {
 pub(crate) fn after(time: f64, interval: f64) -> f64 {
     let next = ((time / interval).floor() + 1.0) * interval;
     if next - time > 1e-9 * interval { next } else { next + interval }
+}
+
+/// Half a fixed step: what is due within belongs to this one; 0 for adaptive steps, which are cut.
+pub(crate) fn half_step(run: &dyn Run) -> f64 {
+    let stepper = run.stepper();
+    if stepper.is_adaptive() { 0.0 } else { 0.5 * stepper.wanted_step() }
 }

@@ -54,6 +54,12 @@ pub trait Physics<const D: usize>: Send + Sync + 'static {
     fn prepare(&mut self, _simulation: &mut Simulation<D, Self::Scheme>, _until: f64) -> f64 {
         f64::INFINITY
     }
+    /// The state is another one now: what is kept of its time and forcing is void.
+    fn restored(&mut self) {}
+    /// Nothing that acts from outside, a source say, begins or changes after `time`.
+    fn is_settled(&self, _time: f64) -> bool {
+        true
+    }
     /// Fields have places without a value.
     fn blanks(&self) -> bool {
         false
@@ -160,7 +166,14 @@ impl<const D: usize, P: Physics<D>> Run for Simulated<D, P> {
         self.physics.film()
     }
     fn track_energy(&mut self) {
-        self.tracks_energy = true;
+        if !std::mem::replace(&mut self.tracks_energy, true) {
+            self.record.energy = self.simulation.totals().energy;
+            self.record.peak_energy = self.record.peak_energy.max(self.record.energy);
+        }
+    }
+    fn at_rest(&self) -> bool {
+        let still = self.simulation.at_rest() || self.simulation.rate() == 0.0;
+        still && self.physics.is_settled(self.simulation.time())
     }
 
     fn step(&mut self, until: f64) -> Result<f64, Failure> {
@@ -251,21 +264,25 @@ impl<const D: usize, P: Physics<D>> Run for Simulated<D, P> {
     }
     fn restore(&mut self, saved: Saved<'static>) -> Result<(), String> {
         let Saved { clock, state, mut maps, at_rest, record } = saved;
+        for (name, map) in self.simulation.maps().into_iter().flat_map(granflow_engine::Maps::named) {
+            if !maps.iter().any(|(own, values)| *own == name && values.len() == map.len()) {
+                return Err(format!("its map {name} is missing or has another shape"));
+            }
+        }
         let state = granflow_engine::Field::of(state.into_iter().map(Cow::into_owned).collect());
         if !self.simulation.restore(&clock, state) {
             return Err("its state has another shape".to_owned());
         }
+        self.physics.restored();
         if at_rest {
             self.simulation.sleep_all();
         }
         for (name, map) in self.simulation.maps_mut() {
-            let taken = maps.iter().position(|(own, values)| *own == name && values.len() == map.len());
-            let Some(k) = taken else {
-                return Err(format!("its map {name} is missing or has another shape"));
-            };
-            map.copy_from_slice(&maps.swap_remove(k).1);
+            if let Some(k) = maps.iter().position(|(own, _)| *own == name) {
+                map.copy_from_slice(&maps.swap_remove(k).1);
+            }
         }
-        self.record = record;
+        self.record = Record { energy: self.simulation.totals().energy, ..record };
         Ok(())
     }
 }

@@ -86,7 +86,7 @@ impl Files {
     /// Takes up the files in `directory` at their checkpoint, and puts `run` where it was.
     ///
     /// # Errors
-    /// [`BeginError`]; nothing has been changed on disk then.
+    /// [`BeginError`]; frames and ledger are then as the checkpoint needs them.
     pub fn resume(
         directory: &Path,
         plan: &RunPlan,
@@ -197,10 +197,10 @@ impl Files {
         Ok(())
     }
 
-    /// Save what goes on from here. `due` are the times of the last frame and line that an unbroken run has too: the
+    /// Save what goes on from here. `written` are the times of the last frame and line that an unbroken run has too: the
     /// frame at which an interrupted run ends goes when it is resumed.
-    fn checkpoint(&mut self, run: &dyn Run, due: [f64; 2]) -> Result<(), output::Error> {
-        self.writer.checkpoint(&checkpoints::of(run, &self.plan, self.schedule.next(), due))?;
+    fn checkpoint(&mut self, run: &dyn Run, written: [f64; 2]) -> Result<(), output::Error> {
+        self.writer.checkpoint(&checkpoints::of(run, &self.plan, self.schedule.next(), written))?;
         self.saved = Instant::now();
         Ok(())
     }
@@ -211,11 +211,11 @@ impl Files {
     /// # Errors
     /// [`FilesError`]; what was complete before stays complete.
     pub fn finish(mut self, mut run: Box<dyn Run>, reason: StopReason) -> Result<Finished, FilesError> {
-        let due = self.written;
-        if due[0] != run.time() {
+        let written = self.written;
+        if written[0] != run.time() {
             self.frame(&mut *run)?;
         }
-        self.checkpoint(&*run, due)?;
+        self.checkpoint(&*run, written)?;
         let command = self.command.clone();
         let ending = Ending::last(&self, run, reason);
         let (frames, ledger) = self.writer.end()?;

@@ -44,9 +44,12 @@ impl Memory {
     /// Begins with the present state of `run` as the first frame; `names` are the fields to keep, none for all.
     ///
     /// # Panics
-    /// If the run has no field of such a name.
+    /// If the run has no field of such a name, or the interval of the frames is not positive.
     #[must_use]
     pub fn begin(run: &mut dyn Run, frames: Frames, names: &[&str]) -> Memory {
+        if let Frames::Every(interval) = frames {
+            assert!(interval > 0.0, "the interval of the frames is {interval}: give a number > 0");
+        }
         let series = run.plane().series();
         let known = |name: &&str| series.iter().any(|field| field.name == **name);
         assert!(names.iter().all(known), "the run has no such field among {names:?}");

@@ -1,7 +1,7 @@
 //! When frames and ledger lines are due.
 
 use crate::model::{Plane, Units};
-use crate::run::{Run, after};
+use crate::run::{Run, after, half_step};
 use granflow_case::Frames;
 
 /// Ledger lines between two frames.
@@ -49,7 +49,7 @@ impl Schedule {
     }
     /// Find the frame and the line after the present time.
     pub fn plan(&mut self, run: &dyn Run) {
-        let time = run.time() + half(run);
+        let time = run.time() + half_step(run);
         if let Some(interval) = self.interval() {
             self.next_frame = after(time, interval);
             self.next_line = after(time, interval / LINES);
@@ -57,7 +57,7 @@ impl Schedule {
     }
     /// What is due at the present time; a line that is due moves on to the next.
     pub fn due(&mut self, run: &dyn Run) -> Due {
-        let time = run.time() + half(run);
+        let time = run.time() + half_step(run);
         let by_steps = matches!(self.frames, Frames::Steps(every) if run.steps().is_multiple_of(every));
         if by_steps || time >= self.next_frame {
             return Due::Frame;
@@ -78,10 +78,4 @@ impl Schedule {
             Frames::Ends => Some(self.default),
         }
     }
-}
-
-/// Half a fixed step: what is due within belongs to this one.
-fn half(run: &dyn Run) -> f64 {
-    let stepper = run.stepper();
-    if stepper.is_adaptive() { 0.0 } else { 0.5 * stepper.wanted_step() }
 }

@@ -63,6 +63,14 @@ impl<const D: usize> Physics<D> for Pouring<D> {
         self.changes_at
     }
 
+    fn restored(&mut self) {
+        self.changes_at = f64::NEG_INFINITY;
+    }
+    fn is_settled(&self, time: f64) -> bool {
+        let sources = &self.sand.sources;
+        !sources.is_moving(time) && sources.changes().iter().all(|change| *change <= time)
+    }
+
     fn blanks(&self) -> bool {
         true
     }
@@ -72,10 +80,7 @@ impl<const D: usize> Physics<D> for Pouring<D> {
         table.blank_part(length, from, values);
     }
     fn is_steady(&self, simulation: &Simulation<D, HadelerKuttler>, rate: f64) -> bool {
-        let time = simulation.time();
-        let sources = &self.sand.sources;
-        let changes = sources.is_moving(time) || sources.changes().iter().any(|change| *change > time);
-        !changes && simulation.drift().iter().all(|drift| *drift < rate)
+        self.is_settled(simulation.time()) && simulation.drift().iter().all(|drift| *drift < rate)
     }
     fn is_equilibrium(&self) -> bool {
         self.sand.equilibrium.is_some()

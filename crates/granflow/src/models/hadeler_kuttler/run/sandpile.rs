@@ -71,9 +71,13 @@ impl<const D: usize> Sandpile<D> {
     /// The run; nothing is computed yet.
     ///
     /// # Errors
-    /// [`BuildError`] for cells without a size.
+    /// [`BuildError`] for cells without a size, or a rate that is negative or not finite.
     pub fn start(self) -> Result<Box<dyn Run>, BuildError> {
         let Sandpile { table, size, rates, scheme: (name, scheme) } = self;
+        if let Some(&value) = rates.iter().find(|rate| !(rate.is_finite() && **rate >= 0.0)) {
+            let allowed = "a finite number >= 0 in every cell";
+            return Err(BuildError::Value { name: "rate of the source", value, allowed });
+        }
         let places = |axis: usize, count: usize, shift: f64| -> Vec<f64> {
             if axis < D { (0..count).map(|k| (k as f64 + shift) * size[axis]).collect() } else { Vec::new() }
         };

@@ -3,9 +3,9 @@
 use super::pouring::Pouring;
 use super::sand::Sand;
 use crate::StartError;
-use crate::run::{Run, Simulated};
+use crate::run::{Run, Simulated, step_size};
 use granflow_case::sandpile::{Pile, Plan, Poured, SchemeName};
-use granflow_case::{Grid, RunPlan, Stepping};
+use granflow_case::{Grid, RunPlan};
 use granflow_engine::simulation::{BuildError, StepSize};
 use granflow_model::hadeler_kuttler::scheme::{FIRST_ORDER, HadelerKuttler, SECOND_ORDER, Slopes};
 
@@ -32,11 +32,7 @@ fn on<const D: usize>(
     let sand = Sand::new(run, grid, pile)?;
     // At its equilibrium a pile is the first-order scheme's.
     let scheme = if sand.equilibrium.is_some() { FIRST_ORDER } else { scheme };
-    let step = match run.stepping {
-        Stepping::Fixed(dt) => StepSize::Fixed(dt),
-        Stepping::Courant(courant) => StepSize::Courant(courant),
-    };
-    Ok(pour(sand, scheme, run.scheme, step)?)
+    Ok(pour(sand, scheme, run.scheme, step_size(run))?)
 }
 
 /// The run of a table with what is poured on it, by a scheme under its name.

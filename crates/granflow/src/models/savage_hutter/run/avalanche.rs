@@ -11,7 +11,7 @@ use granflow_engine::kernels::Kernel;
 use granflow_engine::simulation::{BuildError, Simulation, StepSize};
 use granflow_model::savage_hutter::Flow;
 use granflow_model::savage_hutter::balanced::Balanced;
-use granflow_model::savage_hutter::friction::{Coulomb, Law};
+use granflow_model::savage_hutter::friction::{Coulomb, Friction, Law, Resistance};
 use granflow_model::savage_hutter::ground::{Bed, Chute};
 use granflow_model::scheme::Scheme;
 use std::sync::Arc;
@@ -108,6 +108,14 @@ impl<'a, const D: usize, B> Avalanche<'a, D, B> {
             true => ("balanced_2", Balanced::<Law, G>::second(law, film)),
         };
         let step = step.unwrap_or(StepSize::Courant(scheme.suggested_courant()));
+        refuse_law(law)?;
+        for number in 0..grid.count() {
+            let place = grid.centre(grid.index(number));
+            refuse("thickness", thickness(place), "a finite number >= 0 at every place", |h| h >= 0.0)?;
+            for u in velocity(place) {
+                refuse("velocity", u, "a finite number at every place", |_| true)?;
+            }
+        }
         let state = |index| {
             let place = grid.centre(index);
             let h = thickness(place) / ground(index).thickness(1.0);
@@ -119,6 +127,24 @@ impl<'a, const D: usize, B> Avalanche<'a, D, B> {
         let physics = Flowing::<Balanced<Law, G>>::new(name, film, on_terrain);
         Ok(Box::new(Simulated::new(simulation, physics, plane)))
     }
+}
+
+/// An error unless `value` is finite and `fits`.
+fn refuse(
+    name: &'static str,
+    value: f64,
+    allowed: &'static str,
+    fits: impl Fn(f64) -> bool,
+) -> Result<(), BuildError> {
+    if value.is_finite() && fits(value) { Ok(()) } else { Err(BuildError::Value { name, value, allowed }) }
+}
+
+/// Friction is a finite resistance, never a push.
+fn refuse_law(law: Law) -> Result<(), BuildError> {
+    let Resistance { dry, drag, holding } = law.resistance(1.0, 1.0, 1.0, 1.0);
+    [dry, drag, holding].into_iter().try_for_each(|part| {
+        refuse("friction of the law", part, "parameters that give a finite number >= 0", |part| part >= 0.0)
+    })
 }
 
 impl<'a, const D: usize> Avalanche<'a, D, Slope> {
@@ -136,7 +162,7 @@ impl<'a, const D: usize> Avalanche<'a, D, Slope> {
     /// The run; nothing is computed yet.
     ///
     /// # Errors
-    /// [`BuildError`] for a grid without cells, or a step that the scheme does not take.
+    /// [`BuildError`] for a grid without cells, a step that the scheme does not take, a thickness or a law out of range.
     pub fn start(self) -> Result<Box<dyn Run>, BuildError> {
         let Slope { angle, gravity, epsilon } = self.bed;
         let cos = gravity * angle.cos();
@@ -175,7 +201,7 @@ impl<'a> Avalanche<'a, 2, granflow_geo::terrain::Terrain> {
     /// The run; nothing is computed yet.
     ///
     /// # Errors
-    /// [`BuildError`] for a grid without cells, or a step that the scheme does not take.
+    /// [`BuildError`] for a grid without cells, a step that the scheme does not take, a thickness or a law out of range.
     pub fn start(mut self) -> Result<Box<dyn Run>, BuildError> {
         let empty = granflow_geo::raster::Raster {
             columns: 0,

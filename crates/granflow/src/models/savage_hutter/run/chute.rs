@@ -4,13 +4,13 @@ use super::super::ChuteDomain;
 use super::flowing::Flowing;
 use crate::StartError;
 use crate::model::Plane;
-use crate::run::{Run, Simulated};
+use crate::run::{Run, Simulated, step_size};
 use granflow_case::avalanche::SchemeName;
 use granflow_case::chute::Plan;
-use granflow_case::{Axis, RunPlan, Side, Stepping};
+use granflow_case::{Axis, RunPlan, Side};
 use granflow_engine::grid::Grid;
 use granflow_engine::kernels::Kernel;
-use granflow_engine::simulation::{Simulation, StepSize};
+use granflow_engine::simulation::Simulation;
 
 use granflow_model::savage_hutter::Flow;
 use granflow_model::savage_hutter::balanced::Balanced;
@@ -62,14 +62,6 @@ where
     };
     let simulation = Simulation::new(scheme, grid, step_size(run), ground, state)?;
     Ok(Box::new(Simulated::new(simulation, Flowing::<S>::new(run.scheme, film, false), plane)))
-}
-
-/// The step that a case asks for.
-pub(crate) fn step_size(run: &RunPlan) -> StepSize {
-    match run.stepping {
-        Stepping::Fixed(dt) => StepSize::Fixed(dt),
-        Stepping::Courant(courant) => StepSize::Courant(courant),
-    }
 }
 
 fn grid<const D: usize>(plan: &Plan) -> Grid<D> {

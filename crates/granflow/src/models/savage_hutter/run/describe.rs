@@ -36,7 +36,7 @@ pub(crate) fn terrain(run: &RunPlan, plan: &OnTerrain) -> Result<Vec<Line>, Star
     };
     let mut lines = case(run, material(&plan.material), &format!("{order}, film {:e}, ", plan.film));
     let (bed, release) = terrain::load(run, plan)?;
-    lines.extend(mountain(&bed));
+    lines.extend(mountain(&bed, plan.material.gravity));
     lines.extend(start(run, &mut *terrain::simulate(run, plan, bed, release)?));
     Ok(lines)
 }
@@ -89,14 +89,14 @@ fn grid(plan: &OnChute) -> Vec<Line> {
 
 #[cfg(feature = "geo")]
 /// A mountain: size, steepness, curvature under a fast mass.
-fn mountain(terrain: &Terrain) -> Vec<Line> {
+fn mountain(terrain: &Terrain, gravity: f64) -> Vec<Line> {
     let bed = &terrain.bed;
     let nodata = bed.values.iter().filter(|z| z.is_nan()).count();
     let steep = terrain.steepness(60_f64.to_radians());
     let (low, high) = bed.range().unwrap_or_default();
     // Where the bed is convex, N = g c + c w^T (D^2 b) w vanishes at |w|^2 = g/|smallest eigenvalue of D^2 b|.
     let convex = |h: &[f64; 3]| 0.5 * (h[0] + h[2]) - (0.25 * (h[0] - h[2]).powi(2) + h[1] * h[1]).sqrt();
-    let flies = terrain.count(|fit| -convex(&fit.hessian) * FAST * FAST > 9.81);
+    let flies = terrain.count(|fit| -convex(&fit.hessian) * FAST * FAST > gravity);
     let valid = (bed.values.len() - nodata).max(1);
     let share = 100.0 * flies as f64 / valid as f64;
     let size = format!("{} x {} cells of {} m", bed.columns, bed.rows, bed.cell);

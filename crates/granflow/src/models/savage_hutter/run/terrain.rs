@@ -1,11 +1,10 @@
 //! An avalanche on a mountain, SI units: from a checked case to a run.
 
 use super::super::TerrainDomain;
-use super::chute::step_size;
 use super::flowing::Flowing;
 use crate::StartError;
 use crate::model::Plane;
-use crate::run::{Run, Simulated};
+use crate::run::{Run, Simulated, step_size};
 use granflow_case::RunPlan;
 use granflow_case::terrain::{Extent, Measured, Order, Plan, Release, Thickness};
 use granflow_engine::grid::Grid;
