@@ -228,6 +228,21 @@ fn five_components_are_carried_and_kept_on_a_plane() {
     is_carried_and_kept([70, 45]);
 }
 
+/// Small enough for Miri: every read and write of the loops is checked there.
+#[test]
+fn a_few_steps_of_few_cells() {
+    for ends in [Boundary::Open, Boundary::Wall, Boundary::Periodic] {
+        let (mut line, mut plane) = (run([9], ends), run([9, 6], ends));
+        line.use_simd(SimdLevel::Scalar);
+        plane.use_simd(SimdLevel::Scalar);
+        for _ in 0..3 {
+            line.advance(f64::INFINITY).unwrap();
+            plane.advance(f64::INFINITY).unwrap();
+        }
+        assert!(line.totals().volume > 0.0 && plane.totals().volume > 0.0);
+    }
+}
+
 #[test]
 fn tiles_sleep_until_the_mixture_comes() {
     let mut run = run([400, 60], Boundary::Wall);
