@@ -86,6 +86,24 @@ impl Layout {
     pub fn place(&self, i: isize, j: isize) -> usize {
         ((j + self.margin as isize) as usize) * self.stride + (i + GHOSTS as isize) as usize
     }
+    /// Show `row` the `values` of cells from number `from` on, x fastest, in pieces of a row, each with the place of its first
+    /// cell; every row is `columns` long: the grid's own, or one less where the last column is left out.
+    pub fn by_rows(
+        &self,
+        columns: usize,
+        from: usize,
+        values: &mut [f64],
+        mut row: impl FnMut(usize, &mut [f64]),
+    ) {
+        let (mut number, mut rest) = (from, values);
+        while !rest.is_empty() {
+            let (i, j) = (number % columns, number / columns);
+            let (piece, after) = rest.split_at_mut((columns - i).min(rest.len()));
+            number += piece.len();
+            row(self.place(i as isize, j as isize), piece);
+            rest = after;
+        }
+    }
     /// Place of the cell `offset` cells away along each axis.
     #[inline(always)]
     pub fn moved<const D: usize>(&self, place: usize, offset: [isize; D]) -> usize {

@@ -70,6 +70,7 @@
 
 pub mod build;
 pub mod case;
+mod check_value;
 pub mod describe;
 mod disk;
 mod entry;

@@ -16,7 +16,14 @@ pub(super) use friction::{EarthPressure, Friction};
 pub(super) use scheme::Scheme;
 pub(super) use time::Time;
 
+use crate::file_kind::FileKind;
+use crate::look::Look;
+use crate::plan::{Ends, Frames, RunPlan, Stepping};
+use crate::precision::Precision;
 use crate::source::Missing;
+
+/// Gravity on terrain where nobody says another one \[m/s^2\].
+pub const GRAVITY: f64 = 9.81;
 
 /// Name of the model.
 pub(super) const MODEL: &str = "savage_hutter";
@@ -26,6 +33,30 @@ pub(super) const KEYS: [&str; 4] = ["material", "scheme.film", "time.rest_speed"
 
 /// What `time.until` may be.
 pub(super) const UNTIL: &[&str] = &["rest"];
+
+/// What an avalanche says of its run: title, scheme and step, ends, and what is written.
+pub(super) fn plan(
+    look: &Look,
+    title: &str,
+    scheme: &Scheme,
+    stepping: Stepping,
+    ends: Ends,
+    (frames, files, precision): (Frames, Vec<FileKind>, Precision),
+) -> RunPlan {
+    RunPlan {
+        title: title.to_owned(),
+        model: MODEL,
+        scheme: scheme.name.as_str(),
+        stepping,
+        max_courant: scheme.name.limits().max_courant,
+        notes: scheme.note().into_iter().chain(ends.note()).collect(),
+        ends,
+        frames,
+        files,
+        precision,
+        source: look.source.clone(),
+    }
+}
 
 /// The law is missing.
 pub(super) const NO_FRICTION: Missing = Missing {

@@ -173,21 +173,9 @@ impl Written for Words {
         let stepping = scheme.check(look)?;
         self.check_published(look)?;
         let ends = time.check(look, scheme.name)?;
-        let (frames, files, precision) = output.check(look, &ends, ON_A_GRID, Precision::F64)?;
+        let written = output.check(look, &ends, ON_A_GRID, Precision::F64)?;
         let initial = initial.check(look, &cells)?;
-        let run = RunPlan {
-            title: title.clone(),
-            model: avalanche::MODEL,
-            scheme: scheme.name.as_str(),
-            stepping,
-            max_courant: scheme.name.limits().max_courant,
-            ends,
-            frames,
-            files,
-            precision,
-            notes: scheme.note().into_iter().chain(ends.note()).collect(),
-            source: look.source.clone(),
-        };
+        let run = avalanche::plan(look, title, scheme, stepping, ends, written);
         let kind = Kind::Chute(Plan {
             grid: cells,
             sides,

@@ -120,7 +120,7 @@ impl Written for Words {
         let stepping = scheme.check(look)?;
         let order = order(look, scheme.name)?;
         let ends = time.check(look, scheme.name)?;
-        let (frames, files, precision) = output.check(look, &ends, FILES, Precision::F32)?;
+        let written = output.check(look, &ends, FILES, Precision::F32)?;
         let curvature = terrain.check(look)?;
         let releases = release.iter().enumerate();
         let releases = releases
@@ -130,19 +130,7 @@ impl Written for Words {
         for (index, one) in release.iter().enumerate() {
             one.check_files(look, &format!("release[{index}]"))?;
         }
-        let run = RunPlan {
-            title: title.clone(),
-            model: avalanche::MODEL,
-            scheme: scheme.name.as_str(),
-            stepping,
-            max_courant: scheme.name.limits().max_courant,
-            ends,
-            frames,
-            files,
-            precision,
-            notes: scheme.note().into_iter().chain(ends.note()).collect(),
-            source: look.source.clone(),
-        };
+        let run = avalanche::plan(look, title, scheme, stepping, ends, written);
         let kind = Kind::Terrain(Plan {
             dem: look.locate(&terrain.dem),
             crs: terrain.crs.clone(),
@@ -168,7 +156,12 @@ impl OnTerrain {
         }
         look.positive("material.gravity", self.gravity)?;
         look.positive("material.density", Some(self.density))?;
-        self.friction.material(look, self.earth_pressure, self.gravity.unwrap_or(9.81), self.density)
+        self.friction.material(
+            look,
+            self.earth_pressure,
+            self.gravity.unwrap_or(avalanche::GRAVITY),
+            self.density,
+        )
     }
 }
 

@@ -72,8 +72,8 @@ impl<const D: usize, S: Scheme<D, f64>> Simulation<D, S> {
     pub fn collect<T>(&self, value: impl Fn(&Cell<S::State, S::Ground, S::Forcing>) -> T) -> Vec<T> {
         (0..self.grid.count()).map(|number| value(&self.cell(self.grid.index(number)))).collect()
     }
-    /// A value of as many cells as `values` holds, from number `from` on, x fastest, where every row is `columns` long: the
-    /// grid's own, or one less in each where the last column is left out.
+    /// A value of as many cells as `values` holds, from number `from` on, x fastest, where every row is `columns` long
+    /// ([`Layout::by_rows`](crate::grid::Layout::by_rows)).
     pub fn fill(
         &self,
         columns: usize,
@@ -81,18 +81,12 @@ impl<const D: usize, S: Scheme<D, f64>> Simulation<D, S> {
         values: &mut [f64],
         value: impl Fn(&Cell<S::State, S::Ground, S::Forcing>) -> f64,
     ) {
-        let (mut number, mut rest) = (from, values);
-        while !rest.is_empty() {
-            let (i, j) = (number % columns, number / columns);
-            let (row, after) = rest.split_at_mut((columns - i).min(rest.len()));
-            let place = self.layout.place(i as isize, j as isize);
-            number += row.len();
+        self.layout.by_rows(columns, from, values, |place, row| {
             let cells = self.row(place, row.len());
             for (here, cell) in row.iter_mut().zip(cells) {
                 *here = value(&cell);
             }
-            rest = after;
-        }
+        });
     }
 
     /// A value of every cell, x fastest.

@@ -29,8 +29,7 @@ pub fn drive(run: &mut dyn Run, ends: &Ends, sinks: &mut [&mut dyn Sink]) -> Res
         run.track_energy();
     }
     loop {
-        let asked = sinks.iter().any(|sink| sink.wants_end());
-        if asked {
+        if sinks.iter().any(|sink| sink.wants_end()) {
             return Ok(StopReason::Interrupted);
         }
         if let Some(reason) = reached(run, ends, last) {

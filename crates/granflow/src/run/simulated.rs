@@ -117,6 +117,12 @@ impl<const D: usize, P: Physics<D>> Simulated<D, P> {
         Simulated { simulation, physics, fields, plane, record, tracks_energy: false }
     }
 
+    /// The kinetic energy of the state as it stands, into the record.
+    fn note_energy(&mut self) {
+        self.record.energy = self.simulation.totals().energy;
+        self.record.peak_energy = self.record.peak_energy.max(self.record.energy);
+    }
+
     /// Shape of a field: rows and columns.
     fn shape(&self, field: &Field<D, P::Scheme>) -> [usize; 2] {
         let Layout { columns, rows, .. } = *self.simulation.layout();
@@ -128,15 +134,9 @@ impl<const D: usize, P: Physics<D>> Simulated<D, P> {
         match field.value {
             Value::Component(k) => {
                 let part = &self.simulation.arrays().components()[k];
-                let layout = self.simulation.layout();
-                let (mut number, mut rest) = (from, values);
-                while !rest.is_empty() {
-                    let (i, j) = (number % columns, number / columns);
-                    let (row, after) = rest.split_at_mut((columns - i).min(rest.len()));
-                    row.copy_from_slice(&part[layout.place(i as isize, j as isize)..][..row.len()]);
-                    number += row.len();
-                    rest = after;
-                }
+                self.simulation.layout().by_rows(columns, from, values, |place, row| {
+                    row.copy_from_slice(&part[place..][..row.len()]);
+                });
             }
             Value::Of(value) => self.simulation.fill(columns, from, values, value),
         }
@@ -167,8 +167,7 @@ impl<const D: usize, P: Physics<D>> Run for Simulated<D, P> {
     }
     fn track_energy(&mut self) {
         if !std::mem::replace(&mut self.tracks_energy, true) {
-            self.record.energy = self.simulation.totals().energy;
-            self.record.peak_energy = self.record.peak_energy.max(self.record.energy);
+            self.note_energy();
         }
     }
     fn at_rest(&self) -> bool {
@@ -189,8 +188,7 @@ impl<const D: usize, P: Physics<D>> Run for Simulated<D, P> {
         self.record.peak_speed = self.record.peak_speed.max(self.simulation.speed());
         if self.tracks_energy {
             self.simulation.take_sums();
-            self.record.energy = self.simulation.totals().energy;
-            self.record.peak_energy = self.record.peak_energy.max(self.record.energy);
+            self.note_energy();
         }
         Ok(dt)
     }

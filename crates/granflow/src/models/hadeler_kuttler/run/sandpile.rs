@@ -3,6 +3,7 @@
 use super::sand::{Places, Sand, Sources};
 use super::site::Site;
 use super::start::pour;
+use crate::check_value::check_value;
 use crate::run::Run;
 use granflow_engine::simulation::{BuildError, StepSize};
 use granflow_model::hadeler_kuttler::scheme::{ADAPTIVE, FIRST_ORDER, HadelerKuttler, SECOND_ORDER};
@@ -74,9 +75,10 @@ impl<const D: usize> Sandpile<D> {
     /// [`BuildError`] for cells without a size, or a rate that is negative or not finite.
     pub fn start(self) -> Result<Box<dyn Run>, BuildError> {
         let Sandpile { table, size, rates, scheme: (name, scheme) } = self;
-        if let Some(&value) = rates.iter().find(|rate| !(rate.is_finite() && **rate >= 0.0)) {
-            let allowed = "a finite number >= 0 in every cell";
-            return Err(BuildError::Value { name: "rate of the source", value, allowed });
+        for &rate in &rates {
+            check_value("rate of the source", rate, "a finite number >= 0 in every cell", |rate| {
+                rate >= 0.0
+            })?;
         }
         let places = |axis: usize, count: usize, shift: f64| -> Vec<f64> {
             if axis < D { (0..count).map(|k| (k as f64 + shift) * size[axis]).collect() } else { Vec::new() }

@@ -4,8 +4,10 @@ use super::super::ChuteDomain;
 #[cfg(feature = "geo")]
 use super::super::TerrainDomain;
 use super::flowing::Flowing;
+use crate::check_value::check_value;
 use crate::model::{Domain, Plane};
 use crate::run::{Run, Simulated};
+use granflow_case::avalanche::GRAVITY;
 use granflow_engine::grid::Grid;
 use granflow_engine::kernels::Kernel;
 use granflow_engine::simulation::{BuildError, Simulation, StepSize};
@@ -15,9 +17,6 @@ use granflow_model::savage_hutter::friction::{Coulomb, Friction, Law, Resistance
 use granflow_model::savage_hutter::ground::{Bed, Chute};
 use granflow_model::scheme::Scheme;
 use std::sync::Arc;
-
-/// Standard gravity as the case files take it \[m/s^2\].
-const GRAVITY: f64 = 9.81;
 
 type Field<'a, const D: usize, T> = Box<dyn Fn([f64; D]) -> T + Sync + 'a>;
 
@@ -108,12 +107,12 @@ impl<'a, const D: usize, B> Avalanche<'a, D, B> {
             true => ("balanced_2", Balanced::<Law, G>::second(law, film)),
         };
         let step = step.unwrap_or(StepSize::Courant(scheme.suggested_courant()));
-        refuse_law(law)?;
+        check_law(law)?;
         for number in 0..grid.count() {
             let place = grid.centre(grid.index(number));
-            refuse("thickness", thickness(place), "a finite number >= 0 at every place", |h| h >= 0.0)?;
+            check_value("thickness", thickness(place), "a finite number >= 0 at every place", |h| h >= 0.0)?;
             for u in velocity(place) {
-                refuse("velocity", u, "a finite number at every place", |_| true)?;
+                check_value("velocity", u, "a finite number at every place", |_| true)?;
             }
         }
         let state = |index| {
@@ -129,21 +128,13 @@ impl<'a, const D: usize, B> Avalanche<'a, D, B> {
     }
 }
 
-/// An error unless `value` is finite and `fits`.
-fn refuse(
-    name: &'static str,
-    value: f64,
-    allowed: &'static str,
-    fits: impl Fn(f64) -> bool,
-) -> Result<(), BuildError> {
-    if value.is_finite() && fits(value) { Ok(()) } else { Err(BuildError::Value { name, value, allowed }) }
-}
-
 /// Friction is a finite resistance, never a push.
-fn refuse_law(law: Law) -> Result<(), BuildError> {
+fn check_law(law: Law) -> Result<(), BuildError> {
     let Resistance { dry, drag, holding } = law.resistance(1.0, 1.0, 1.0, 1.0);
     [dry, drag, holding].into_iter().try_for_each(|part| {
-        refuse("friction of the law", part, "parameters that give a finite number >= 0", |part| part >= 0.0)
+        check_value("friction of the law", part, "parameters that give a finite number >= 0", |part| {
+            part >= 0.0
+        })
     })
 }
 
