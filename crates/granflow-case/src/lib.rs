@@ -60,7 +60,7 @@ pub use formula::{Formula, FormulaError};
 pub use grid::{Axis, Grid, Points};
 pub use kinds::*;
 pub use nearest::nearest;
-pub use plan::{Ends, Frames, RunPlan, Stepping, Until};
+pub use plan::{Ends, Frames, OutputPlan, RunPlan, Stepping, Until};
 pub use precision::Precision;
 
 #[cfg(test)]

@@ -3,7 +3,7 @@
 use crate::fault::CaseError;
 use crate::file_kind::FileKind;
 use crate::look::Look;
-use crate::plan::{Ends, Frames};
+use crate::plan::{Ends, Frames, OutputPlan};
 use crate::precision::Precision;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -30,15 +30,14 @@ pub struct Output {
 const FRAMES: u32 = 20;
 
 impl Output {
-    /// When the state is written, which files, and how precise they are; `files` and `precision` are what is written where
-    /// the case does not say. Files that need a place on the earth are refused unless they are among `files`.
+    /// What is written; `files` and `precision` are those where the case does not say. Files that need a place on the earth are refused unless they are among `files`.
     pub(crate) fn check(
         &self,
         look: &Look,
         ends: &Ends,
         files: &[&str],
         precision: Precision,
-    ) -> Result<(Frames, Vec<FileKind>, Precision), CaseError> {
+    ) -> Result<OutputPlan, CaseError> {
         if self.every.is_some() && self.steps.is_some() {
             let message = "both `every` and `steps` are given";
             return Err(look.fault("output.steps", message, "keep one of them"));
@@ -53,7 +52,7 @@ impl Output {
             (None, None, None, None) => Frames::Ends,
         };
         let files = self.kinds(look, files)?;
-        Ok((frames, files, self.precision.unwrap_or(precision)))
+        Ok(OutputPlan { frames, files, precision: self.precision.unwrap_or(precision) })
     }
 
     /// The kinds of files that are asked for; where the case does not say, those of `files` that can be written.

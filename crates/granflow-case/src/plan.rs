@@ -22,12 +22,8 @@ pub struct RunPlan {
     pub max_courant: f64,
     /// What ends the run.
     pub ends: Ends,
-    /// When the state is written.
-    pub frames: Frames,
-    /// The kinds of files to write.
-    pub files: Vec<FileKind>,
-    /// Precision of the numbers in the files.
-    pub precision: Precision,
+    /// What is written.
+    pub output: OutputPlan,
     /// What is allowed but may surprise, one sentence each.
     pub notes: Vec<String>,
     /// Where the case was read from.
@@ -65,6 +61,17 @@ impl RunPlan {
     pub fn fault(&self, key: &str, message: impl Into<String>, cure: &str) -> CaseError {
         self.source.fault(key, message).help(cure)
     }
+}
+
+/// What is written: `[output]`, checked.
+#[derive(Debug, Clone, PartialEq)]
+pub struct OutputPlan {
+    /// When the state is.
+    pub frames: Frames,
+    /// The kinds of files.
+    pub files: Vec<FileKind>,
+    /// Precision of the numbers in them.
+    pub precision: Precision,
 }
 
 /// What ends a run; the first that is reached does.

@@ -82,13 +82,13 @@ fn the_silo() {
         ("A silo breaks", "savage_hutter", "verfahren_5")
     );
     assert_eq!((run.stepping, run.max_courant), (Stepping::Fixed(0.001), 1.0));
-    assert_eq!(run.frames, Frames::Steps(500));
-    assert_eq!(named(&run.files), ["netcdf", "figures"]);
-    assert_eq!((run.precision, run.notes.len()), (Precision::F64, 0));
+    assert_eq!(run.output.frames, Frames::Steps(500));
+    assert_eq!(named(&run.output.files), ["netcdf", "figures"]);
+    assert_eq!((run.output.precision, run.notes.len()), (Precision::F64, 0));
     let ends = Ends { steps: Some(10000), time: None, until: None, kinetic_energy: None };
     assert_eq!(run.ends, ends);
     let silo = on_chute(Checked { run, kind });
-    assert_eq!((silo.scheme, silo.film), (avalanche::SchemeName::Verfahren5, 0.0));
+    assert_eq!((silo.scheme.name, silo.scheme.film), (avalanche::SchemeName::Verfahren5, 0.0));
     let tan = 18f64.to_radians().tan();
     let material = silo.material;
     assert_eq!((material.mu, material.gravity, material.density), (tan, 1.0, 1.0));
@@ -177,12 +177,12 @@ fn a_mountain() {
         std::fs::write(folder.path().join(name), "").unwrap();
     }
     let Checked { run, kind } = checked(&Case::read(&file).unwrap());
-    assert_eq!((run.precision, run.frames), (Precision::F32, Frames::Every(0.5)));
-    assert_eq!((run.files.len(), run.locate(Path::new("x"))), (5, folder.path().join("x")));
+    assert_eq!((run.output.precision, run.output.frames), (Precision::F32, Frames::Every(0.5)));
+    assert_eq!((run.output.files.len(), run.locate(Path::new("x"))), (5, folder.path().join("x")));
     let Kind::Terrain(mountain) = kind else { panic!("it has a terrain") };
     assert_eq!((mountain.dem, mountain.curvature), (folder.path().join("a.tif"), None));
-    assert_eq!((mountain.material.gravity, mountain.film), (9.81, 1e-6));
-    assert_eq!(mountain.scheme, terrain::Order::First);
+    assert_eq!((mountain.material.gravity, mountain.scheme.film), (9.81, 1e-6));
+    assert_eq!(mountain.scheme.name, terrain::Order::First);
     let thickness = terrain::Thickness::Attribute(terrain::Attribute { attribute: "d".into() });
     let path = folder.path().join("r.shp");
     assert_eq!(mountain.releases[0].extent, terrain::Extent::Polygons { path, thickness });

@@ -8,8 +8,8 @@ pub type Line = (&'static str, String);
 /// What the case says, with its defaults; `material` stands after the model, `scheme` says the order and the parameters of
 /// the scheme.
 pub(crate) fn case(run: &RunPlan, material: Vec<Line>, scheme: &str) -> Vec<Line> {
-    let files: Vec<&str> = run.files.iter().map(|kind| kind.name).collect();
-    let frames = match run.frames {
+    let files: Vec<&str> = run.output.files.iter().map(|kind| kind.name).collect();
+    let frames = match run.output.frames {
         Frames::Every(time) => format!("every {time} in time"),
         Frames::Steps(steps) => format!("every {steps} steps"),
         Frames::Ends => "at the start and at the end".to_owned(),
@@ -25,7 +25,7 @@ pub(crate) fn case(run: &RunPlan, material: Vec<Line>, scheme: &str) -> Vec<Line
     lines.extend([
         ("scheme", format!("{}, {scheme}{stepping}", run.scheme)),
         ("ends", ends(run)),
-        ("output", format!("{} {frames}, {:?}", files.join(", "), run.precision).to_lowercase()),
+        ("output", format!("{} {frames}, {:?}", files.join(", "), run.output.precision).to_lowercase()),
     ]);
     lines
 }

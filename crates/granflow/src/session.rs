@@ -88,7 +88,7 @@ impl Checked {
     ) -> Result<Finished, RunError> {
         let plan = self.plan().clone();
         let mut run = self.start()?;
-        check_kinds(&plan.files, run.plane())?;
+        check_kinds(&plan.output.files, run.plane())?;
         let begin = if *resume { Files::resume } else { Files::begin };
         let mut files = begin(directory, &plan, command, &mut *run)?.since(begun);
         let mut report = Callback(report);

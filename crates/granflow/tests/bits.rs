@@ -33,7 +33,7 @@ fn the_cases_have_the_bits_they_had() {
         let checked = Case::read(format!("{folder}/{name}.toml")).unwrap().check().unwrap();
         let plan = checked.plan().clone();
         let mut run = checked.start().unwrap();
-        let mut memory = Memory::begin(&mut *run, plan.frames, &fields);
+        let mut memory = Memory::begin(&mut *run, plan.output.frames, &fields);
         drive(&mut *run, &plan.ends, &mut [&mut memory]).unwrap();
         let recording = memory.finish(&mut *run);
         for (field, expected) in fields.into_iter().zip(sums) {

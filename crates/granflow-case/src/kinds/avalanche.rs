@@ -8,7 +8,7 @@ mod scheme;
 mod time;
 
 pub use friction::Material;
-pub use scheme::SchemeName;
+pub use scheme::{Method, SchemeName};
 
 pub(super) use scheme::NAMES as SCHEMES;
 
@@ -16,10 +16,8 @@ pub(super) use friction::{EarthPressure, Friction};
 pub(super) use scheme::Scheme;
 pub(super) use time::Time;
 
-use crate::file_kind::FileKind;
 use crate::look::Look;
-use crate::plan::{Ends, Frames, RunPlan, Stepping};
-use crate::precision::Precision;
+use crate::plan::{Ends, OutputPlan, RunPlan, Stepping};
 use crate::source::Missing;
 
 /// Gravity on terrain where nobody says another one \[m/s^2\].
@@ -41,7 +39,7 @@ pub(super) fn plan(
     scheme: &Scheme,
     stepping: Stepping,
     ends: Ends,
-    (frames, files, precision): (Frames, Vec<FileKind>, Precision),
+    output: OutputPlan,
 ) -> RunPlan {
     RunPlan {
         title: title.to_owned(),
@@ -51,9 +49,7 @@ pub(super) fn plan(
         max_courant: scheme.name.limits().max_courant,
         notes: scheme.note().into_iter().chain(ends.note()).collect(),
         ends,
-        frames,
-        files,
-        precision,
+        output,
         source: look.source.clone(),
     }
 }

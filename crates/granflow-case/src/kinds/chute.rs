@@ -3,7 +3,7 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::avalanche::{self, EarthPressure, Friction, Material, SchemeName};
+use super::avalanche::{self, EarthPressure, Friction, Material, Method, SchemeName};
 use super::{About, Foreign, Kind, Written};
 use crate::boundary::{Boundary, Side};
 use crate::fault::CaseError;
@@ -37,9 +37,7 @@ pub struct Plan {
     /// What flows, and what holds it back.
     pub material: Material,
     /// The scheme.
-    pub scheme: SchemeName,
-    /// Thickness below which a cell is a film.
-    pub film: f64,
+    pub scheme: Method<SchemeName>,
     /// The state at the start.
     pub initial: InitialState,
 }
@@ -184,8 +182,7 @@ impl Written for Words {
             epsilon: self.material.epsilon.unwrap_or(1.0),
             eta: self.material.eta.unwrap_or(1.0),
             material,
-            scheme: scheme.name,
-            film: scheme.film(),
+            scheme: scheme.method(scheme.name),
             initial,
         });
         Ok((run, kind))

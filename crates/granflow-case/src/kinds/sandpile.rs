@@ -132,7 +132,7 @@ impl Written for Words {
         grid.check(look)?;
         let stepping = scheme.check(look)?;
         let ends = time.check(look)?;
-        let (frames, files, precision) = output.check(look, &ends, ON_A_GRID, Precision::F64)?;
+        let output = output.check(look, &ends, ON_A_GRID, Precision::F64)?;
         self.check_files(look)?;
         let mut notes: Vec<String> = ends.note().into_iter().collect();
         let waits = matches!(ends.until, Some(Until::Steady { .. } | Until::Equilibrium));
@@ -147,9 +147,7 @@ impl Written for Words {
             stepping,
             max_courant: scheme.name.limits().max_courant,
             ends,
-            frames,
-            files,
-            precision,
+            output,
             notes,
             source: look.source.clone(),
         };

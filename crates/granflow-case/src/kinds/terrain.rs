@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::avalanche::{self, EarthPressure, Friction, Material, SchemeName};
+use super::avalanche::{self, EarthPressure, Friction, Material, Method, SchemeName};
 use super::{About, Foreign, Kind, Written};
 use crate::fault::CaseError;
 use crate::look::Look;
@@ -37,9 +37,7 @@ pub struct Plan {
     /// What flows, and what holds it back.
     pub material: Material,
     /// The scheme.
-    pub scheme: Order,
-    /// Thickness below which a cell is a film.
-    pub film: f64,
+    pub scheme: Method<Order>,
 }
 
 /// Order of the balanced scheme in space and time.
@@ -138,8 +136,7 @@ impl Written for Words {
             curvature,
             releases,
             material,
-            scheme: order,
-            film: scheme.film(),
+            scheme: scheme.method(order),
         });
         Ok((run, kind))
     }

@@ -24,10 +24,8 @@ impl FileAccess for Everywhere {
 fn values(case: &Case) -> String {
     let checked = case.check(&Everywhere);
     let Checked { run, kind } = checked.unwrap_or_else(|error| panic!("{error}\n{}", case.text()));
-    let RunPlan {
-        title, model, scheme, stepping, max_courant, ends, frames, files, precision, notes, ..
-    } = run;
-    let run = (title, model, scheme, stepping, max_courant, ends, frames, files, precision, notes);
+    let RunPlan { title, model, scheme, stepping, max_courant, ends, output, notes, .. } = run;
+    let run = (title, model, scheme, stepping, max_courant, ends, output, notes);
     // the debug format of a float is exact
     format!("{run:?} {kind:?}")
 }

@@ -86,7 +86,7 @@ fn the_defaults() {
     assert_eq!((run.scheme, run.stepping), ("adaptive", Stepping::Courant(0.225)));
     assert_eq!((scheme, theta_exponent), (SchemeName::Adaptive, 2.0));
     assert_eq!(run.ends.until, Some(Until::Steady { rate: 1e-8 }));
-    assert_eq!(named(&run.files), ["netcdf", "figures"]);
+    assert_eq!(named(&run.output.files), ["netcdf", "figures"]);
     let (first, _) = evaluated(&["scheme.name=first_order"]);
     assert_eq!((first.stepping, first.max_courant), (Stepping::Courant(0.45), 1.0));
     let Poured::Plane(pile) = table else { panic!("it has y") };

@@ -75,7 +75,7 @@ impl Files {
         remove_leftovers(directory)?;
         // An older checkpoint would belong to other frames.
         output::remove_if_there(&checkpoints::file_in(directory))?;
-        let frames = Frames::create(&frames_in(directory), plan.precision, run.plane().series())?;
+        let frames = Frames::create(&frames_in(directory), plan.output.precision, run.plane().series())?;
         let ledger = Ledger::create(&ledger_in(directory), run.plane().outlets())?;
         let mut files = Self::over(directory, plan, command, run, frames, ledger)?;
         files.frame(run)?;
@@ -131,7 +131,7 @@ impl Files {
             command: command.to_owned(),
             film: run.film(),
             writer,
-            schedule: Schedule::new(plan.frames, run.plane()),
+            schedule: Schedule::new(plan.output.frames, run.plane()),
             written,
             begun: now,
             updates: run.stepper().updates(),

@@ -33,6 +33,15 @@ pub(crate) struct Scheme {
     pub film: Option<f64>,
 }
 
+/// `[scheme]`, checked: the method, and what it is told beside the step.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Method<N> {
+    /// Which one.
+    pub name: N,
+    /// Thickness below which a cell is a film; the published methods know none, so it is 0 for them.
+    pub film: f64,
+}
+
 /// The methods: the five published ones (Kaland 2007) and the conservative ones.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
@@ -120,9 +129,9 @@ impl Scheme {
         Ok(stepping)
     }
 
-    /// Thickness below which a cell is a film; the published methods know none, so it is 0 for them.
-    pub fn film(&self) -> f64 {
-        if self.name.is_published() { 0.0 } else { self.film.unwrap_or(1e-6) }
+    /// The method as the run takes it, under the name that its kind of case has for it.
+    pub fn method<N>(&self, name: N) -> Method<N> {
+        Method { name, film: if self.name.is_published() { 0.0 } else { self.film.unwrap_or(1e-6) } }
     }
 
     /// What has no effect, if anything.

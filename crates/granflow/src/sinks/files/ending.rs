@@ -45,7 +45,7 @@ impl Ending {
     fn with(files: &Files, plane: Plane, maps: Maps, summary: Summary) -> Ending {
         Ending {
             directory: files.directory.clone(),
-            files: files.plan.files.clone(),
+            files: files.plan.output.files.clone(),
             case: files.plan.resolved(),
             case_text: files.plan.text(),
             film: files.film,

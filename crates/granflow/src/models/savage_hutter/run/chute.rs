@@ -5,7 +5,7 @@ use super::flowing::Flowing;
 use crate::StartError;
 use crate::model::Plane;
 use crate::run::{Run, Simulated, step_size};
-use granflow_case::avalanche::SchemeName;
+use granflow_case::avalanche::{Method, SchemeName};
 use granflow_case::chute::Plan;
 use granflow_case::{Axis, RunPlan, Side};
 use granflow_engine::grid::Grid;
@@ -28,10 +28,10 @@ pub(crate) fn start(run: &RunPlan, plan: Plan) -> Result<Box<dyn Run>, StartErro
 }
 
 fn on<const D: usize>(run: &RunPlan, plan: Plan) -> Result<Box<dyn Run>, StartError> {
-    let Plan { ref material, scheme, film, .. } = plan;
-    let (law, mu) = (material.law, material.mu);
+    let (law, mu) = (plan.material.law, plan.material.mu);
+    let Method { name, film } = plan.scheme;
     let published = |variant: Variant| variant.with(Coulomb { mu });
-    match scheme {
+    match name {
         SchemeName::Balanced => simulate::<D, _>(run, plan, Balanced::first(law, film)),
         SchemeName::Balanced2 => simulate::<D, _>(run, plan, Balanced::second(law, film)),
         SchemeName::Verfahren1 => simulate::<D, _>(run, plan, published(VERFAHREN_1)),
@@ -46,7 +46,7 @@ fn simulate<const D: usize, S>(run: &RunPlan, plan: Plan, scheme: S) -> Result<B
 where
     S: Kernel<D, State = Flow<D, f64>, Ground = Chute<D, f64>> + 'static,
 {
-    let (grid, grounds, initial, film) = (grid::<D>(&plan), columns(&plan), plan.initial, plan.film);
+    let (grid, grounds, initial, film) = (grid::<D>(&plan), columns(&plan), plan.initial, plan.scheme.film);
     let columns = grid.cells[0];
     let plane = Plane::of(&grid, Arc::new(ChuteDomain));
     // Both own what they read: it is given back once the simulation is made.

@@ -21,7 +21,7 @@ const FAST: f64 = 30.0;
 /// The lines about an avalanche on a chute.
 pub(crate) fn chute(run: &RunPlan, plan: OnChute) -> Result<Vec<Line>, StartError> {
     let order = if run.scheme == "balanced_2" { "second order" } else { "first order" };
-    let mut lines = case(run, material(&plan.material), &format!("{order}, film {:e}, ", plan.film));
+    let mut lines = case(run, material(&plan.material), &format!("{order}, film {:e}, ", plan.scheme.film));
     lines.extend(grid(&plan));
     lines.extend(start(run, &mut *chute::start(run, plan)?));
     Ok(lines)
@@ -30,11 +30,11 @@ pub(crate) fn chute(run: &RunPlan, plan: OnChute) -> Result<Vec<Line>, StartErro
 /// The lines about an avalanche on a mountain.
 #[cfg(feature = "geo")]
 pub(crate) fn terrain(run: &RunPlan, plan: &OnTerrain) -> Result<Vec<Line>, StartError> {
-    let order = match plan.scheme {
+    let order = match plan.scheme.name {
         Order::First => "first order",
         Order::Second => "second order",
     };
-    let mut lines = case(run, material(&plan.material), &format!("{order}, film {:e}, ", plan.film));
+    let mut lines = case(run, material(&plan.material), &format!("{order}, film {:e}, ", plan.scheme.film));
     let (bed, release) = terrain::load(run, plan)?;
     lines.extend(mountain(&bed, plan.material.gravity));
     lines.extend(start(run, &mut *terrain::simulate(run, plan, bed, release)?));
@@ -81,7 +81,7 @@ fn grid(plan: &OnChute) -> Vec<Line> {
     let thickness = &plan.initial.thickness;
     let (low, high) = range(thickness);
     let area = plan.grid.x.width() * plan.grid.y.as_ref().map_or(1.0, Axis::width);
-    let wet = thickness.iter().filter(|h| **h > plan.film).count();
+    let wet = thickness.iter().filter(|h| **h > plan.scheme.film).count();
     let mass = thickness.iter().sum::<f64>() * area;
     lines.push(("thickness", format!("{low} to {high}, mass {mass:.6}, {wet} wet cells")));
     lines

@@ -50,8 +50,8 @@ pub(super) fn simulate(
         density: plan.material.density,
     };
     let plane = Plane::of(&grid, Arc::new(domain));
-    let (law, film) = (plan.material.law, plan.film);
-    let scheme = match plan.scheme {
+    let (law, film) = (plan.material.law, plan.scheme.film);
+    let scheme = match plan.scheme.name {
         Order::First => Balanced::first(law, film),
         Order::Second => Balanced::second(law, film),
     };
