@@ -86,6 +86,29 @@ impl Field {
             }
         });
     }
+    /// Become those of `other`.
+    pub(crate) fn copy_from(&mut self, other: &Field) {
+        if self.doubles.len() != other.doubles.len() {
+            *self = other.clone();
+            return;
+        }
+        for (own, other) in self.doubles.iter_mut().zip(&other.doubles) {
+            own.copy_from_slice(other);
+        }
+    }
+    /// Go this share of the way to `end`, in double precision; what is the same stays so bit for bit.
+    pub(crate) fn approach(&mut self, end: &Field, share: f64) {
+        const AT_ONCE: usize = 1 << 14;
+        for (own, end) in self.doubles.iter_mut().zip(&end.doubles) {
+            parallel::for_each_chunk_mut(own, AT_ONCE, |from, own| {
+                for (own, end) in own.iter_mut().zip(&end[from..]) {
+                    if own != end {
+                        *own += share * (end - *own);
+                    }
+                }
+            });
+        }
+    }
     /// Does it hold values of type `P` in every place of the layout?
     pub(crate) fn holds<P: Components<f64>>(&self, layout: &Layout) -> bool {
         let fits = |k: usize| [self.doubles[k].len(), self.singles[k].len()] == Self::lengths::<P>(layout, k);

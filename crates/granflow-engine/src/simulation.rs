@@ -6,6 +6,7 @@ mod cells;
 mod error;
 mod forcing;
 mod ground;
+mod instant;
 mod ledger;
 mod maps;
 mod rates;

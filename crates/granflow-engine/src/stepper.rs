@@ -17,7 +17,16 @@ pub trait Stepper: Send + Sync {
     /// # Errors
     /// As [`Simulation::advance`].
     fn advance(&mut self, until: f64) -> Result<f64, Failure>;
-    /// Time reached.
+    /// As [`Simulation::expect`].
+    fn expect(&mut self, time: f64);
+    /// As [`Simulation::show`].
+    ///
+    /// # Panics
+    /// As [`Simulation::show`].
+    fn show(&mut self, time: f64);
+    /// As [`Simulation::show_end`].
+    fn show_end(&mut self);
+    /// Time reached, or shown.
     fn time(&self) -> f64;
     /// Steps done.
     fn steps(&self) -> u64;
@@ -128,6 +137,9 @@ impl<const D: usize, S: Scheme<D, f64>> Stepper for Simulation<D, S> {
         fn traffic(&self) -> Traffic;
         mut:
         fn advance(&mut self, until: f64) -> Result<f64, Failure>;
+        fn expect(&mut self, time: f64);
+        fn show(&mut self, time: f64);
+        fn show_end(&mut self);
         fn take_sums(&mut self);
         fn yield_ratios(&mut self) -> Vec<f64>;
         fn restore(&mut self, clock: &[f64], arrays: Field) -> bool;

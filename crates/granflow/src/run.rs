@@ -20,7 +20,7 @@ pub use drive::{DriveError, drive};
 pub use entry::mass_error;
 pub use field_view::FieldView;
 pub use frames::Frames;
-pub(crate) use frames::{after, half_step};
+pub(crate) use frames::after;
 pub use granflow_case::{Ends, Until};
 pub use granflow_engine::simulation::{Failure, Totals};
 pub use record::Record;

@@ -173,26 +173,77 @@ fn a_sink_goes_on_where_a_run_was_stepped_past_its_instant() {
     assert!(times.len() > 3 && times.is_sorted() && times.last() == Some(&1.5), "{times:?}");
 }
 
+const FIXED: &str = r#"
+grid.x = { from = -6.0, to = 6.0, cells = 60 }
+material.friction.coulomb = { angle = "18 deg" }
+initial.thickness.cap = { height = 1.0, radius = 2.0 }
+scheme = { name = "verfahren_5", step = 0.003 }
+time.end = 1.0
+"#;
+
 #[test]
-fn fixed_steps_are_not_cut_for_frames() {
-    let text = r#"
-    grid.x = { from = -6.0, to = 6.0, cells = 60 }
-    material.friction.coulomb = { angle = "18 deg" }
-    initial.thickness.cap = { height = 1.0, radius = 2.0 }
-    scheme = { name = "verfahren_5", step = 0.003 }
-    time.end = 1.0
-    "#;
-    let mut run = start(text);
-    let mut frames = run.frames(0.05);
-    let mut times = Vec::new();
-    while let Some(run) = frames.next().unwrap() {
-        times.push((run.time(), run.steps()));
-        if run.time() > 0.5 {
-            break;
+fn what_is_looked_at_changes_nothing_of_what_is_computed() {
+    let ends = |time| Ends {
+        steps: None,
+        time: Some(time),
+        until: Some(Until::Rest { speed: None }),
+        kinetic_energy: None,
+    };
+    for (text, end) in [(PILE, 1.5), (SLIDE, 50.0), (SLIDE, 80.0), (FIXED, 1.0)] {
+        let mut alone = start(text);
+        let reason = drive(&mut *alone, &ends(end), &mut []).unwrap();
+        for every in [0.3, 0.017, 0.0023, 7.0] {
+            let mut run = start(text);
+            let mut memory = Memory::begin(&mut *run, Frames::Every(every), &[]);
+            let mut other = Memory::begin(&mut *run, Frames::Every(0.7 * every), &[]);
+            assert_eq!(drive(&mut *run, &ends(end), &mut [&mut memory, &mut other]).unwrap(), reason);
+            assert!(bits(&*run) == bits(&*alone), "frames every {every}");
+            assert_eq!((run.time(), run.steps()), (alone.time(), alone.steps()));
+            assert_eq!(run.stepper().outflow(), alone.stepper().outflow());
+            assert_eq!(run.stepper().poured(), alone.stepper().poured());
+            assert_eq!(run.peaks(), alone.peaks());
+            let recording = memory.finish(&mut *run);
+            let (last, regular) = recording.times.split_last().unwrap();
+            assert_eq!(*last, alone.time());
+            assert!(regular.iter().enumerate().all(|(k, time)| (time - every * k as f64).abs() < 1e-12));
+            for line in &recording.ledger {
+                assert!(line.mass_error.abs() <= 1e-14, "{line:?}");
+            }
         }
     }
-    assert!(times.iter().all(|(time, steps)| (time - 0.003 * *steps as f64).abs() < 1e-12), "{times:?}");
-    assert!(times.iter().enumerate().all(|(k, (time, _))| (time - 0.05 * k as f64).abs() <= 0.0015 + 1e-12));
+}
+
+#[test]
+fn an_instant_lies_on_the_straight_line_between_two_steps() {
+    for text in [PILE, SLIDE, FIXED] {
+        let mut run = start(text);
+        run.until(0.2).unwrap();
+        let begin = (run.time(), fields(&*run));
+        run.stepper_mut().expect(begin.0);
+        run.step(f64::INFINITY).unwrap();
+        let (end, outflow) = ((run.time(), fields(&*run)), run.stepper().outflow());
+        for share in [0.25, 0.5, 0.875, 1.0] {
+            let time = begin.0 + share * (end.0 - begin.0);
+            run.stepper_mut().show(time);
+            assert_eq!(run.time(), time);
+            for ((shown, a), b) in fields(&*run).iter().zip(&begin.1).zip(&end.1) {
+                assert!(
+                    (shown - (a + share * (b - a))).abs() <= 4e-15 * a.abs().max(b.abs()),
+                    "{a} {shown} {b}"
+                );
+            }
+        }
+        run.stepper_mut().show_end();
+        assert!(fields(&*run) == end.1 && run.time() == end.0 && run.stepper().outflow() == outflow);
+    }
+}
+
+/// The state, component by component.
+fn fields(run: &dyn Run) -> Vec<f64> {
+    let stepper = run.stepper();
+    (0..stepper.components())
+        .flat_map(|k| stepper.component(k).rows().flatten().copied().collect::<Vec<_>>())
+        .collect()
 }
 
 #[test]

@@ -14,7 +14,9 @@ impl<const D: usize, S: Scheme<D, f64>> Simulation<D, S> {
     /// # Errors
     /// [`Failure`]: where it is [`Failure::NotFinite`] the state is that after the failed step, else nothing has been done.
     pub fn advance(&mut self, until: f64) -> Result<f64, Failure> {
+        self.show_end();
         let (dt, time) = self.next_step(until)?;
+        self.keep_before(time);
         self.wake();
         let mut out = [0.0; OUTLETS.len()];
         for (stage, &rk_weight) in self.stages.iter().enumerate() {
@@ -29,10 +31,11 @@ impl<const D: usize, S: Scheme<D, f64>> Simulation<D, S> {
                 }
             }
         }
+        (self.last.begin, self.last.out, self.last.poured) = (self.time, out, dt * self.supply);
         self.time = time;
         self.step += 1;
         self.last_dt = dt;
-        self.poured.add(dt * self.supply);
+        self.poured.add(self.last.poured);
         for (sum, part) in self.out.iter_mut().zip(out) {
             sum.add(part);
         }

@@ -1,5 +1,6 @@
 //! To save a run and to take it up again.
 
+use super::instant::LastStep;
 use super::state::Simulation;
 use crate::field::Field;
 use crate::tiles::OUTLETS;
@@ -12,9 +13,10 @@ pub const CLOCK: usize = 3 + 2 * OUTLETS.len() + 3;
 impl<const D: usize, S: Scheme<D, f64>> Simulation<D, S> {
     /// The numbers that a restart needs: time, step, updates, and the ledger.
     pub fn clock(&self) -> Vec<f64> {
-        let mut numbers = vec![self.time, self.step as f64, self.updates as f64];
-        numbers.extend(self.out.iter().flat_map(|sum| sum.parts()));
-        numbers.extend(self.poured.parts());
+        let (out, poured) = self.ledger();
+        let mut numbers = vec![self.time(), self.step as f64, self.updates as f64];
+        numbers.extend(out.iter().flat_map(|sum| sum.parts()));
+        numbers.extend(poured.parts());
         numbers.push(self.last_dt);
         numbers
     }
@@ -35,6 +37,7 @@ impl<const D: usize, S: Scheme<D, f64>> Simulation<D, S> {
             let end = 3 + 2 * OUTLETS.len();
             self.poured = CompensatedSum::from_parts([clock[end], clock[end + 1]]);
             self.last_dt = clock[end + 2];
+            self.last = LastStep::none(self.time);
             self.now = arrays;
             self.next = self.now.clone();
             self.wake_all();
@@ -46,5 +49,6 @@ impl<const D: usize, S: Scheme<D, f64>> Simulation<D, S> {
     /// Give back the memory that only steps need, for there will be none, or none before [`Simulation::restore`].
     pub fn release_buffers(&mut self) {
         self.next = Field::default();
+        self.last.before = Field::default();
     }
 }

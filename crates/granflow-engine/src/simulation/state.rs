@@ -1,6 +1,7 @@
 //! A run in memory: fields, clock, tiles and ledger.
 
 use super::error::{BuildError, check};
+use super::instant::LastStep;
 use super::step_size::StepSize;
 use super::totals::Totals;
 use crate::boundary;
@@ -75,6 +76,7 @@ pub struct Simulation<const D: usize, S: Scheme<D, f64>> {
     pub(super) supply: f64,
     pub(super) poured: CompensatedSum,
     pub(super) last_dt: f64,
+    pub(super) last: LastStep,
 }
 
 /// The field whose cells have these values, given by index per axis.
@@ -164,6 +166,7 @@ impl<const D: usize, S: Scheme<D, f64>> Simulation<D, S> {
             supply: 0.0,
             poured: CompensatedSum::default(),
             last_dt: 0.0,
+            last: LastStep::none(0.0),
             stages: scheme.stages(),
             loops,
             scheme,
@@ -210,9 +213,9 @@ impl<const D: usize, S: Scheme<D, f64>> Simulation<D, S> {
     pub fn scheme(&self) -> &S {
         &self.scheme
     }
-    /// Time reached.
+    /// Time reached, or shown ([`Simulation::show`]).
     pub fn time(&self) -> f64 {
-        self.time
+        self.last.shown.unwrap_or(self.time)
     }
     /// Steps done.
     pub fn step(&self) -> u64 {

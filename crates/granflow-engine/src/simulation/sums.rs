@@ -15,13 +15,14 @@ impl<const D: usize, S: Scheme<D, f64>> Simulation<D, S> {
         };
         let parts = parallel::map(self.tiles.len(), sum);
         let (mut volume, mut film) = (CompensatedSum::default(), CompensatedSum::default());
-        let mut totals = Totals { speed: self.speed(), ..Totals::default() };
+        let mut totals = Totals::default();
         for part in parts {
             volume.add(part.volume);
             film.add(part.film);
             totals.energy += part.energy;
             totals.wet += part.wet;
             totals.moving += part.moving;
+            totals.speed = totals.speed.max(part.speed);
         }
         let measure = self.grid.measure();
         totals.energy *= measure;
@@ -46,7 +47,7 @@ impl<const D: usize, S: Scheme<D, f64>> Simulation<D, S> {
 
     /// Sums over a tile, per cell measure.
     fn totals_of(&self, tile: &Tile) -> Totals {
-        let mut totals = Totals::default();
+        let (mut totals, mut square) = (Totals::default(), 0.0);
         self.visit(tile, |cell| {
             let watch = self.scheme.diagnostics(cell);
             totals.volume += watch.volume;
@@ -54,7 +55,9 @@ impl<const D: usize, S: Scheme<D, f64>> Simulation<D, S> {
             totals.energy += watch.energy;
             totals.wet += usize::from(watch.volume > 0.0);
             totals.moving += usize::from(watch.speed_squared > 0.0);
+            square = watch.speed_squared.max(square);
         });
+        totals.speed = square.sqrt();
         totals
     }
 

@@ -18,8 +18,9 @@ pub enum DriveError {
     Sink(#[from] SinkError),
 }
 
-/// Step `run` to the first of its `ends`, or until a sink asks for the end. An adaptive step is cut at every instant that a
-/// sink waits for; a fixed step never is: the sink is shown the step that comes nearest.
+/// Step `run` to the first of its `ends`, or until a sink asks for the end. No step is cut at an instant that a sink waits
+/// for: the sink is shown the state there on the straight line between the begin and the end of the step that passes it
+/// ([`Stepper::show`](super::Stepper::show)). So what is written changes nothing of what is computed.
 ///
 /// # Errors
 /// [`DriveError`]: the sinks have seen every step before.
@@ -35,17 +36,37 @@ pub fn drive(run: &mut dyn Run, ends: &Ends, sinks: &mut [&mut dyn Sink]) -> Res
         if let Some(reason) = reached(run, ends, last) {
             return Ok(reason);
         }
-        // An instant that has passed is shown after the next step, however short or long.
-        let instants = sinks.iter().map(|sink| sink.next_instant()).filter(|instant| *instant > run.time());
-        let instant = instants.fold(last, f64::min);
-        let until = if run.stepper().is_adaptive() { instant } else { last };
+        run.stepper_mut().expect(next_instant(sinks));
         let time = run.time();
-        let dt = run.step(until).map_err(|failure| DriveError::Step { failure, time })?;
+        let dt = run.step(last).map_err(|failure| DriveError::Step { failure, time })?;
         if dt.is_infinite() {
             return Ok(StopReason::AtRest);
         }
+        show_instants(run, sinks)?;
         for sink in sinks.iter_mut() {
             sink.after_step(run)?;
+        }
+    }
+}
+
+/// The first instant that a sink waits for.
+fn next_instant(sinks: &[&mut dyn Sink]) -> f64 {
+    sinks.iter().map(|sink| sink.next_instant()).fold(f64::INFINITY, f64::min)
+}
+
+/// Show the sinks the instants that the last step passed, in their order.
+fn show_instants(run: &mut dyn Run, sinks: &mut [&mut dyn Sink]) -> Result<(), SinkError> {
+    let end = run.time();
+    loop {
+        let instant = next_instant(sinks);
+        if instant > end {
+            run.stepper_mut().show_end();
+            return Ok(());
+        }
+        run.stepper_mut().show(instant);
+        for sink in sinks.iter_mut().filter(|sink| sink.next_instant() == instant) {
+            sink.at_instant(run)?;
+            assert!(sink.next_instant() > instant, "a sink waits again for an instant that it was shown");
         }
     }
 }

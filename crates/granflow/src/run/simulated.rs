@@ -171,11 +171,15 @@ impl<const D: usize, P: Physics<D>> Run for Simulated<D, P> {
         }
     }
     fn at_rest(&self) -> bool {
+        if self.simulation.is_shown() {
+            return false;
+        }
         let still = self.simulation.at_rest() || self.simulation.rate() == 0.0;
         still && self.physics.is_settled(self.simulation.time())
     }
 
     fn step(&mut self, until: f64) -> Result<f64, Failure> {
+        self.simulation.show_end();
         let change = self.physics.prepare(&mut self.simulation, until);
         let until = if self.simulation.is_adaptive() { until.min(change) } else { until };
         if !self.simulation.wanted_step().is_finite() && !until.is_finite() {

@@ -14,15 +14,22 @@ impl SinkError {
     }
 }
 
-/// Something that is shown a run after every step of [`drive`](super::drive).
+/// Something that is shown a run by [`drive`](super::drive): after every step, and at instants of its own.
 pub trait Sink {
-    /// The next instant at which it must see the run; infinite where any will do.
+    /// The next instant at which it wants to see the run, after the present time; infinite where there is none.
     fn next_instant(&self) -> f64 {
         f64::INFINITY
     }
     /// It asks for the end of the run.
     fn wants_end(&self) -> bool {
         false
+    }
+    /// The run stands as it did at [`Sink::next_instant`], which must be a later one from then on.
+    ///
+    /// # Errors
+    /// [`SinkError`], which ends the run.
+    fn at_instant(&mut self, _run: &mut dyn Run) -> Result<(), SinkError> {
+        Ok(())
     }
     /// A step has been taken.
     ///

@@ -165,6 +165,13 @@ impl Files {
         self.line(run)
     }
 
+    /// A frame that was due, and when the next one is.
+    fn frame_due(&mut self, run: &mut dyn Run) -> Result<(), output::Error> {
+        self.frame(run)?;
+        self.schedule.plan(run);
+        Ok(())
+    }
+
     /// Have the series so far joined into `result.nc`, if that is worth its cost again.
     fn join(&mut self, run: &mut dyn Run) -> Result<(), output::Error> {
         if let Some(cost) = self.writer.joined() {
@@ -183,14 +190,11 @@ impl Files {
     fn step_taken(&mut self, run: &mut dyn Run) -> Result<(), output::Error> {
         self.writer.check()?;
         match self.schedule.due(run) {
-            Due::Frame => {
-                self.frame(run)?;
-                self.schedule.plan(run);
-                self.join(run)?;
-            }
+            Due::Frame => self.frame_due(run)?,
             Due::Line => self.line(run)?,
             Due::Nothing => {}
         }
+        self.join(run)?;
         if self.saved.elapsed().as_secs_f64() > CHECKPOINT {
             self.checkpoint(run, self.written)?;
         }
@@ -241,6 +245,9 @@ impl Files {
 impl Sink for Files {
     fn next_instant(&self) -> f64 {
         self.schedule.next()[0]
+    }
+    fn at_instant(&mut self, run: &mut dyn Run) -> Result<(), SinkError> {
+        self.frame_due(run).map_err(SinkError::of)
     }
     fn after_step(&mut self, run: &mut dyn Run) -> Result<(), SinkError> {
         self.step_taken(run).map_err(SinkError::of)

@@ -97,6 +97,11 @@ impl Sink for Memory {
     fn next_instant(&self) -> f64 {
         self.schedule.next()[0]
     }
+    fn at_instant(&mut self, run: &mut dyn Run) -> Result<(), SinkError> {
+        self.frame(run);
+        self.schedule.plan(run);
+        Ok(())
+    }
     fn after_step(&mut self, run: &mut dyn Run) -> Result<(), SinkError> {
         if self.schedule.due(run) == Due::Frame {
             self.frame(run);

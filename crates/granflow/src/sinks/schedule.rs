@@ -1,7 +1,7 @@
 //! When frames and ledger lines are due.
 
 use crate::model::{Plane, Units};
-use crate::run::{Run, after, half_step};
+use crate::run::{Run, after};
 use granflow_case::Frames;
 
 /// Ledger lines between two frames.
@@ -24,7 +24,7 @@ pub enum Due {
     Nothing,
     /// A line of the ledger.
     Line,
-    /// A frame, and a line.
+    /// A frame by the count of steps, and a line.
     Frame,
 }
 
@@ -49,17 +49,16 @@ impl Schedule {
     }
     /// Find the frame and the line after the present time.
     pub fn plan(&mut self, run: &dyn Run) {
-        let time = run.time() + half_step(run);
+        let time = run.time();
         if let Some(interval) = self.interval() {
             self.next_frame = after(time, interval);
             self.next_line = after(time, interval / LINES);
         }
     }
-    /// What is due at the present time; a line that is due moves on to the next.
+    /// What is due after a step; a line that is due moves on to the next. Frames at instants are not: see [`Schedule::next`].
     pub fn due(&mut self, run: &dyn Run) -> Due {
-        let time = run.time() + half_step(run);
-        let by_steps = matches!(self.frames, Frames::Steps(every) if run.steps().is_multiple_of(every));
-        if by_steps || time >= self.next_frame {
+        let time = run.time();
+        if matches!(self.frames, Frames::Steps(every) if run.steps().is_multiple_of(every)) {
             return Due::Frame;
         }
         if time < self.next_line {

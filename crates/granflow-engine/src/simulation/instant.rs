@@ -1,0 +1,121 @@
+//! The state at an instant within the last step. What is written at instants changes nothing of what is computed: no step is
+//! cut for it.
+
+use super::state::Simulation;
+use crate::field::Field;
+use crate::tiles::OUTLETS;
+use granflow_model::real::CompensatedSum;
+use granflow_model::scheme::Scheme;
+
+/// The last step, for what is shown from within it.
+#[derive(Debug)]
+pub(super) struct LastStep {
+    /// Time at its begin.
+    pub begin: f64,
+    /// What left through each outlet, per cell measure, and what was poured in.
+    pub out: [f64; OUTLETS.len()],
+    pub poured: f64,
+    /// The state at its begin, where the stages wrote over it and somebody asked; a single stage leaves it in `next`.
+    pub before: Field,
+    /// A step that ends at this time or later is one that somebody will look into.
+    pub asked: f64,
+    /// The instant that is shown in place of the end of the step.
+    pub shown: Option<f64>,
+}
+
+impl LastStep {
+    /// There was none.
+    pub fn none(time: f64) -> Self {
+        LastStep {
+            begin: time,
+            out: [0.0; OUTLETS.len()],
+            poured: 0.0,
+            before: Field::default(),
+            asked: f64::INFINITY,
+            shown: None,
+        }
+    }
+}
+
+impl<const D: usize, S: Scheme<D, f64>> Simulation<D, S> {
+    /// Ask for the step that passes `time`, to be looked into by [`Simulation::show`]: a method of several stages then keeps the
+    /// state before it.
+    pub fn expect(&mut self, time: f64) {
+        self.last.asked = time;
+    }
+
+    /// Show the state at `time` within the last step, on the straight line between its begin and its end,
+    /// U + (time - begin)/dt (U' - U), with the ledger at that time, until [`Simulation::show_end`], the next step, or another
+    /// instant, which must be later. Rates, [`Simulation::at_rest`], peaks and maps stay those of the end of the step.
+    ///
+    /// # Panics
+    /// If `time` is not within the last step, or before an instant that is shown, or was not asked for
+    /// ([`Simulation::expect`]).
+    pub fn show(&mut self, time: f64) {
+        let from = self.last.shown.unwrap_or(self.last.begin);
+        self.show_end();
+        if time == self.time {
+            return;
+        }
+        assert!(from <= time && time < self.time, "time {time} is not within the last step, or was passed");
+        let share = (time - from) / (self.time - from);
+        let (end, before) = self.ends();
+        before.approach(end, share);
+        self.last.shown = Some(time);
+        self.swap_ends();
+    }
+
+    /// Show the end of the last step again.
+    pub fn show_end(&mut self) {
+        if self.last.shown.is_some() {
+            self.swap_ends();
+            self.last.shown = None;
+        }
+    }
+
+    /// Is an instant within the last step shown?
+    pub fn is_shown(&self) -> bool {
+        self.last.shown.is_some()
+    }
+
+    /// The state, and the one at the begin of the last step.
+    fn ends(&mut self) -> (&mut Field, &mut Field) {
+        let before = if self.stages.len() == 1 { &mut self.next } else { &mut self.last.before };
+        (&mut self.now, before)
+    }
+
+    fn swap_ends(&mut self) {
+        let (now, before) = self.ends();
+        std::mem::swap(now, before);
+        // Cells that sleep are the same at both times.
+        for &number in &self.awake {
+            self.outdated[number as usize] = true;
+        }
+    }
+
+    /// Keep the state before a step to `time`, where it will be asked for and the stages write over it.
+    pub(super) fn keep_before(&mut self, time: f64) {
+        if self.stages.len() > 1 && self.last.asked <= time {
+            self.last.before.copy_from(&self.now);
+        }
+    }
+
+    /// The ledger at what is shown: what has left through each outlet, per cell measure, and what has been poured in.
+    pub(super) fn ledger(&self) -> ([CompensatedSum; OUTLETS.len()], CompensatedSum) {
+        let hidden = self.hidden_share();
+        let (mut out, mut poured) = (self.out, self.poured);
+        if hidden > 0.0 {
+            for (sum, part) in out.iter_mut().zip(self.last.out) {
+                sum.add(-hidden * part);
+            }
+            poured.add(-hidden * self.last.poured);
+        }
+        (out, poured)
+    }
+
+    /// The share of the last step that lies behind what is shown.
+    fn hidden_share(&self) -> f64 {
+        let shown = |time: f64| (self.time - time) / (self.time - self.last.begin);
+        self.last.shown.map_or(0.0, shown)
+    }
+}
