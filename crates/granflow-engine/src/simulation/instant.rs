@@ -17,6 +17,7 @@ pub(super) struct LastStep {
     pub poured: f64,
     /// The state at its begin, where the stages wrote over it and somebody asked; a single stage leaves it in `next`.
     pub before: Field,
+    pub kept: bool,
     /// A step that ends at this time or later is one that somebody will look into.
     pub asked: f64,
     /// The instant that is shown in place of the end of the step.
@@ -31,6 +32,7 @@ impl LastStep {
             out: [0.0; OUTLETS.len()],
             poured: 0.0,
             before: Field::default(),
+            kept: false,
             asked: f64::INFINITY,
             shown: None,
         }
@@ -58,6 +60,7 @@ impl<const D: usize, S: Scheme<D, f64>> Simulation<D, S> {
             return;
         }
         assert!(from <= time && time < self.time, "time {time} is not within the last step, or was passed");
+        assert!(self.last.kept, "nobody asked for the step that passed time {time}");
         let share = (time - from) / (self.time - from);
         let (end, before) = self.ends();
         before.approach(end, share);
@@ -95,7 +98,8 @@ impl<const D: usize, S: Scheme<D, f64>> Simulation<D, S> {
 
     /// Keep the state before a step to `time`, where it will be asked for and the stages write over it.
     pub(super) fn keep_before(&mut self, time: f64) {
-        if self.stages.len() > 1 && self.last.asked <= time {
+        self.last.kept = self.stages.len() == 1 || self.last.asked <= time;
+        if self.stages.len() > 1 && self.last.kept {
             self.last.before.copy_from(&self.now);
         }
     }

@@ -42,7 +42,7 @@ pub fn drive(run: &mut dyn Run, ends: &Ends, sinks: &mut [&mut dyn Sink]) -> Res
         if dt.is_infinite() {
             return Ok(StopReason::AtRest);
         }
-        show_instants(run, sinks)?;
+        show_instants(run, sinks, time)?;
         for sink in sinks.iter_mut() {
             sink.after_step(run)?;
         }
@@ -54,8 +54,9 @@ fn next_instant(sinks: &[&mut dyn Sink]) -> f64 {
     sinks.iter().map(|sink| sink.next_instant()).fold(f64::INFINITY, f64::min)
 }
 
-/// Show the sinks the instants that the last step passed, in their order.
-fn show_instants(run: &mut dyn Run, sinks: &mut [&mut dyn Sink]) -> Result<(), SinkError> {
+/// Show the sinks the instants that the last step, from time `begin` on, passed, in their order. Of one that had passed before
+/// (somebody else stepped the run) they see the end of the step.
+fn show_instants(run: &mut dyn Run, sinks: &mut [&mut dyn Sink], begin: f64) -> Result<(), SinkError> {
     let end = run.time();
     loop {
         let instant = next_instant(sinks);
@@ -63,7 +64,7 @@ fn show_instants(run: &mut dyn Run, sinks: &mut [&mut dyn Sink]) -> Result<(), S
             run.stepper_mut().show_end();
             return Ok(());
         }
-        run.stepper_mut().show(instant);
+        run.stepper_mut().show(if instant < begin { end } else { instant });
         for sink in sinks.iter_mut().filter(|sink| sink.next_instant() == instant) {
             sink.at_instant(run)?;
             assert!(sink.next_instant() > instant, "a sink waits again for an instant that it was shown");
