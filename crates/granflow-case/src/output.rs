@@ -1,4 +1,4 @@
-//! `[output]`: which files, how many instants, how many digits.
+//! `[output]`: which files, how many instants, how many digits, and how thick a layer must be to count.
 
 use crate::fault::CaseError;
 use crate::file_kind::FileKind;
@@ -24,19 +24,32 @@ pub struct Output {
     /// Precision of the numbers in the files (default f64 on a grid, f32 on terrain).
     #[serde(skip_serializing_if = "Option::is_none")]
     pub precision: Option<Precision>,
+    /// Thickness normal to the bed that a layer must exceed to count in peaks, times and outlines (default 0.01 m on terrain,
+    /// 1e-3 on a chute).
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub threshold: Option<f64>,
+}
+
+/// What a kind of case writes where its case does not say.
+pub(crate) struct Defaults {
+    /// Kinds of files, as far as they can be written.
+    pub files: &'static [&'static str],
+    /// Precision of the numbers in them.
+    pub precision: Precision,
+    /// See [`OutputPlan::threshold`].
+    pub threshold: f64,
 }
 
 /// Frames of a run whose end is known.
 const FRAMES: u32 = 20;
 
 impl Output {
-    /// What is written; `files` and `precision` are those where the case does not say. Files that need a place on the earth are refused unless they are among `files`.
+    /// What is written. Files that need a place on the earth are refused unless they are among those of `defaults`.
     pub(crate) fn check(
         &self,
         look: &Look,
         ends: &Ends,
-        files: &[&str],
-        precision: Precision,
+        defaults: &Defaults,
     ) -> Result<OutputPlan, CaseError> {
         if self.every.is_some() && self.steps.is_some() {
             let message = "both `every` and `steps` are given";
@@ -44,6 +57,7 @@ impl Output {
         }
         look.positive("output.every", self.every)?;
         look.not_zero("output.steps", self.steps)?;
+        look.not_negative("output.threshold", self.threshold)?;
         let frames = match (self.every, self.steps, ends.time, ends.steps) {
             (Some(every), ..) => Frames::Every(every),
             (None, Some(steps), ..) => Frames::Steps(steps),
@@ -51,8 +65,12 @@ impl Output {
             (None, None, None, Some(steps)) => Frames::Steps(steps.div_ceil(u64::from(FRAMES)).max(1)),
             (None, None, None, None) => Frames::Ends,
         };
-        let files = self.kinds(look, files)?;
-        Ok(OutputPlan { frames, files, precision: self.precision.unwrap_or(precision) })
+        Ok(OutputPlan {
+            frames,
+            files: self.kinds(look, defaults.files)?,
+            precision: self.precision.unwrap_or(defaults.precision),
+            threshold: self.threshold.unwrap_or(defaults.threshold),
+        })
     }
 
     /// The kinds of files that are asked for; where the case does not say, those of `files` that can be written.

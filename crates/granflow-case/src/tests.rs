@@ -84,7 +84,7 @@ fn the_silo() {
     assert_eq!((run.stepping, run.max_courant), (Stepping::Fixed(0.001), 1.0));
     assert_eq!(run.output.frames, Frames::Steps(500));
     assert_eq!(named(&run.output.files), ["netcdf", "figures"]);
-    assert_eq!((run.output.precision, run.notes.len()), (Precision::F64, 0));
+    assert_eq!((run.output.precision, run.output.threshold, run.notes.len()), (Precision::F64, 1e-3, 0));
     let ends = Ends { steps: Some(10000), time: None, until: None, kinetic_energy: None };
     assert_eq!(run.ends, ends);
     let silo = on_chute(Checked { run, kind });
@@ -141,7 +141,7 @@ fn a_case_survives_its_own_writing() {
         &[
             "material.friction={samosat={}}",
             "scheme.name=balanced_2",
-            "output={every=0.5,files=[\"vtk\"],precision=\"f32\"}",
+            "output={every=0.5,files=[\"vtk\"],precision=\"f32\",threshold=0.02}",
         ],
     ];
     for changes in changes {
@@ -178,6 +178,7 @@ fn a_mountain() {
     }
     let Checked { run, kind } = checked(&Case::read(&file).unwrap());
     assert_eq!((run.output.precision, run.output.frames), (Precision::F32, Frames::Every(0.5)));
+    assert_eq!(run.output.threshold, 0.01);
     assert_eq!((run.output.files.len(), run.locate(Path::new("x"))), (5, folder.path().join("x")));
     let Kind::Terrain(mountain) = kind else { panic!("it has a terrain") };
     assert_eq!((mountain.dem, mountain.curvature), (folder.path().join("a.tif"), None));

@@ -91,8 +91,9 @@ pub trait Stepper: Send + Sync {
     /// Give back the memory that only steps need, for there will be none, or none before [`Stepper::restore`].
     fn release_buffers(&mut self);
 
-    /// Keep summary maps from now on, beginning with the state as it stands.
-    fn keep_maps(&mut self);
+    /// Keep summary maps from now on, beginning with the state as it stands; counted is what is thicker than `threshold` (units of
+    /// the thickness, normal to the bed).
+    fn keep_maps(&mut self, threshold: f64);
     /// The summary maps, where they are kept.
     fn maps(&self) -> Option<&Maps>;
     /// A summary map by its name, padded, to be overwritten.
@@ -147,7 +148,7 @@ impl<const D: usize, S: Scheme<D, f64>> Stepper for Simulation<D, S> {
         fn sleep_all(&mut self);
         fn use_simd(&mut self, simd: SimdLevel);
         fn release_buffers(&mut self);
-        fn keep_maps(&mut self);
+        fn keep_maps(&mut self, threshold: f64);
     }
     fn steps(&self) -> u64 {
         self.step()

@@ -11,6 +11,7 @@ mod strip;
 
 use crate::disjoint::DisjointSlice;
 use crate::lanes::{Contexts, SimdContext, SimdKernel, SimdVector};
+use crate::observe::Maps;
 use crate::parallel;
 use crate::tiles::{TileBlock, TileStats};
 use granflow_model::scheme::{Components, Scheme, SchemeVisitor};
@@ -40,7 +41,7 @@ impl Sweep<'_> {
         let mut arrays = to.arrays_mut();
         let targets = Targets {
             to: std::array::from_fn(|_| arrays.next().map(DisjointSlice::new)),
-            maps: maps.map(|maps| maps.slices()),
+            maps: maps.map(Maps::marks),
         };
         let stats = DisjointSlice::new(&mut stats[..self.awake.len()]);
         let changes = DisjointSlice::new(&mut changes[..self.awake.len() * tracked]);

@@ -21,7 +21,7 @@ fn run<const D: usize>(cells: [usize; D]) -> Simulation<D, Kinetic> {
 fn views_are_the_state_and_a_restart_goes_on_as_the_run() {
     let mut plain = run([40, 17]);
     let mut erased: Box<dyn Stepper> = Box::new(run([40, 17]));
-    erased.keep_maps();
+    erased.keep_maps(0.0);
     for _ in 0..3 {
         let dt = plain.advance(f64::INFINITY).unwrap();
         assert_eq!(erased.advance(f64::INFINITY), Ok(dt));

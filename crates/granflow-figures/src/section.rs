@@ -21,9 +21,10 @@ pub struct Section<'a> {
     pub bed: &'a [f64],
     /// Thickness at rest, as many (m).
     pub deposit: &'a [f64],
-    /// Greatest thickness over the run, as many (m); may be empty.
+    /// Greatest thickness over the run, as many (m), not finite where nothing passed; may be empty.
     pub peak_thickness: &'a [f64],
-    /// Greatest speed over the run, as many (m/s); may be empty, then its panel is left out.
+    /// Greatest speed over the run, as many (m/s), not finite where nothing passed, which is drawn as 0; may be empty, then its
+    /// panel is left out.
     pub peak_speed: &'a [f64],
     /// How many times too thick deposit and flow are drawn; where `None` a round number that makes the thickest layer
     /// about a tenth of the height of the ground. The figure always says it.
@@ -81,7 +82,8 @@ impl Section<'_> {
         let (surface, mut envelope) = (raised(self.deposit), raised(self.peak_thickness));
         // Where nothing ever passed there is no envelope.
         for (k, height) in envelope.iter_mut().enumerate() {
-            if self.peak_thickness[k.saturating_sub(1)..(k + 2).min(n)].iter().all(|&h| h <= 0.0) {
+            let near = &self.peak_thickness[k.saturating_sub(1)..(k + 2).min(n)];
+            if near.iter().all(|&h| h.is_nan() || h <= 0.0) {
                 *height = f64::NAN;
             }
         }
@@ -111,7 +113,8 @@ impl Section<'_> {
     }
 
     fn draw_speed(&self, canvas: &mut Canvas, panel: &Panel) {
-        let (x, y) = (self.distance, self.peak_speed);
+        let speeds: Vec<f64> = self.peak_speed.iter().map(|&u| if u.is_finite() { u } else { 0.0 }).collect();
+        let (x, y) = (self.distance, speeds.as_slice());
         panel.draw_grid(canvas);
         let speed = Curve { name: "", x, y, style: Style::Solid, colour: Some(FLOW) };
         draw_all(

@@ -73,6 +73,7 @@ impl Finished {
             case_text: self.case_text.clone(),
             scheme: self.summary.scheme.clone(),
             stop_reason: self.summary.stop_reason.to_string(),
+            threshold: self.summary.threshold,
         };
         let times = frames.times().to_vec();
         let result = dataset(&self.plane, frames.precision(), times, series, &self.maps, about);

@@ -47,7 +47,7 @@ fn steps_allocate_nothing_after_the_first() {
                 let pile = |[x, y]: [f64; 2]| Flow::still((1.0 - (x - 6.0).hypot(y - 4.0)).max(0.0));
                 let mut run =
                     on_plane(order, (0.3, 1e-6), order.courant(), sheet, plane([0.2, 0.1], 0.4), pile);
-                run.keep_maps();
+                run.keep_maps(1e-3);
                 steps(&mut run, 1);
                 // A thread of the pool sets up its own tools when it first takes work from another, once in its
                 // life and whenever the system lets it: at most one of these spells may see that for each thread.

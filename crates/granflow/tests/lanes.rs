@@ -31,6 +31,9 @@ fn bits<const D: usize, S: Kernel<D>>(run: &Simulation<D, S>) -> Vec<u64> {
     numbers.iter().map(|number| number.to_bits()).collect()
 }
 
+/// Some of the cells are thicker and others not, in one vector and in the course of a run.
+const THRESHOLD: f64 = 0.6;
+
 /// Take steps with each kind of instructions and compare after each few.
 fn compare<const D: usize, S: Kernel<D>>(name: &str, build: impl Fn() -> Simulation<D, S> + Sync) {
     alone(|| {
@@ -43,7 +46,7 @@ fn compare<const D: usize, S: Kernel<D>>(name: &str, build: impl Fn() -> Simulat
         for step in 0..12 {
             for run in [&mut scalar, &mut narrow, &mut widest] {
                 if step == 0 {
-                    run.keep_maps();
+                    run.keep_maps(THRESHOLD);
                 }
                 for _ in 0..3 {
                     run.advance(f64::INFINITY).expect("finite");

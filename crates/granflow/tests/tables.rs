@@ -128,6 +128,7 @@ fn run(name: &str, plane: Plane, full: &[f64], files: &[&str]) -> Finished {
         time: TIMES[3],
         stop_reason: StopReason::Steady,
         stopping_time: None,
+        threshold: None,
         mass_initial: 0.0,
         mass_final: 0.1,
         mass_in: 1.0,

@@ -9,7 +9,7 @@ use crate::boundary::{Boundary, Side};
 use crate::fault::CaseError;
 use crate::grid::{Axis, Grid, Points};
 use crate::look::Look;
-use crate::output::{ON_A_GRID, Output};
+use crate::output::{Defaults, ON_A_GRID, Output};
 use crate::plan::RunPlan;
 use crate::precision::Precision;
 use crate::quantity::Quantity;
@@ -18,6 +18,9 @@ use crate::source::Missing;
 mod slope;
 
 use slope::{Columns, Slope};
+
+/// The threshold on a chute where nobody says another one, in the unit of the thickness, which the papers scale to order 1.
+pub const THRESHOLD: f64 = 1e-3;
 
 /// An avalanche on a chute, in plain numbers.
 #[derive(Debug, Clone, PartialEq)]
@@ -171,7 +174,7 @@ impl Written for Words {
         let stepping = scheme.check(look)?;
         self.check_published(look)?;
         let ends = time.check(look, scheme.name)?;
-        let written = output.check(look, &ends, ON_A_GRID, Precision::F64)?;
+        let written = output.check(look, &ends, &WRITTEN)?;
         let initial = initial.check(look, &cells)?;
         let run = avalanche::plan(look, title, scheme, stepping, ends, written);
         let kind = Kind::Chute(Plan {
@@ -248,6 +251,9 @@ impl Initial {
         })
     }
 }
+
+/// What is written where the case does not say.
+const WRITTEN: Defaults = Defaults { files: ON_A_GRID, precision: Precision::F64, threshold: THRESHOLD };
 
 /// Keys that not every model has.
 const KEYS: [&str; 8] = {

@@ -7,7 +7,7 @@ use super::{About, Foreign, Kind, Written};
 use crate::fault::CaseError;
 use crate::grid::Grid;
 use crate::look::Look;
-use crate::output::{ON_A_GRID, Output};
+use crate::output::{Defaults, ON_A_GRID, Output};
 use crate::plan::{RunPlan, Until};
 use crate::precision::Precision;
 use crate::quantity::Quantity;
@@ -132,7 +132,7 @@ impl Written for Words {
         grid.check(look)?;
         let stepping = scheme.check(look)?;
         let ends = time.check(look)?;
-        let output = output.check(look, &ends, ON_A_GRID, Precision::F64)?;
+        let output = output.check(look, &ends, &WRITTEN)?;
         self.check_files(look)?;
         let mut notes: Vec<String> = ends.note().into_iter().collect();
         let waits = matches!(ends.until, Some(Until::Steady { .. } | Until::Equilibrium));
@@ -160,6 +160,9 @@ impl Written for Words {
         Ok((run, kind))
     }
 }
+
+/// What is written where the case does not say.
+const WRITTEN: Defaults = Defaults { files: ON_A_GRID, precision: Precision::F64, threshold: 0.0 };
 
 /// Keys that not every model has.
 const KEYS: &[&str] = &[
@@ -190,6 +193,10 @@ const FOREIGN: &[Foreign] = &[
     no_meaning("initial.velocity_x", "remove it: the rolling layer rolls down the slope"),
     no_meaning("initial.velocity_y", "remove it: the rolling layer rolls down the slope"),
     no_meaning("scheme.film", "remove it: there are no films"),
+    no_meaning(
+        "output.threshold",
+        "remove it: a sandpile has no maps of peaks and times for a layer to count in",
+    ),
     no_meaning("time.rest_speed", "write until = \"steady\" and steady_rate"),
     no_meaning("time.stop", "write until = \"steady\" and steady_rate"),
 ];

@@ -9,7 +9,7 @@ use super::avalanche::{self, EarthPressure, Friction, Material, Method, SchemeNa
 use super::{About, Foreign, Kind, Written};
 use crate::fault::CaseError;
 use crate::look::Look;
-use crate::output::Output;
+use crate::output::{Defaults, Output};
 use crate::plan::RunPlan;
 use crate::precision::Precision;
 use crate::source::Missing;
@@ -20,6 +20,9 @@ mod words;
 use words::Elevation;
 
 pub use release::{Attribute, Cap, Extent, Measured, Release, Thickness};
+
+/// The threshold on a mountain where nobody says another one \[m\].
+pub const THRESHOLD: f64 = 0.01;
 
 /// An avalanche on a mountain, in plain numbers: metres, seconds.
 #[derive(Debug, Clone, PartialEq)]
@@ -118,7 +121,7 @@ impl Written for Words {
         let stepping = scheme.check(look)?;
         let order = order(look, scheme.name)?;
         let ends = time.check(look, scheme.name)?;
-        let written = output.check(look, &ends, FILES, Precision::F32)?;
+        let written = output.check(look, &ends, &WRITTEN)?;
         let curvature = terrain.check(look)?;
         let releases = release.iter().enumerate();
         let releases = releases
@@ -179,8 +182,12 @@ fn order(look: &Look, scheme: SchemeName) -> Result<Order, CaseError> {
     }
 }
 
-/// Files of a case that does not say which.
-const FILES: &[&str] = &["netcdf", "figures", "geotiff", "vector", "report"];
+/// What is written where the case does not say.
+const WRITTEN: Defaults = Defaults {
+    files: &["netcdf", "figures", "geotiff", "vector", "report"],
+    precision: Precision::F32,
+    threshold: THRESHOLD,
+};
 
 /// Keys that not every model has.
 const KEYS: [&str; 6] = {

@@ -297,6 +297,7 @@ const BAD: &[(&[&str], &str, &[&str])] = &[
         "scheme.name",
         &["balanced is not one of hadeler_kuttler", "allowed: first_order, second_order, adaptive"],
     ),
+    (&["output.threshold=0.01"], "output.threshold", &["no meaning", "no maps of peaks and times"]),
     (&["time.rest_speed=1e-6"], "time.rest_speed", &["no meaning", "steady_rate"]),
     (&["time.stop.kinetic_energy=0.1"], "time.stop", &["no meaning", "steady_rate"]),
     (&["time.until=rest"], "time.until", &["no end \"rest\"", "until = \"steady\""]),

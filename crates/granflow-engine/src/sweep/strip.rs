@@ -34,6 +34,7 @@ use crate::disjoint::DisjointSlice;
 use crate::field::{MAX_COMPONENTS, has};
 use crate::grid::Layout;
 use crate::lanes::{SimdVector, prefetch};
+use crate::observe::Marks;
 use crate::tiles::{OutletFace, Tile, TileStats};
 use granflow_model::real::{for_axis, per_axis};
 use granflow_model::scheme::{Cell, Components, REACH, Scheme, Spacing, Stencil};
@@ -43,7 +44,7 @@ pub(super) struct Targets<'a> {
     /// The arrays of the state, [`Layout::len`] numbers each; as many as it has components.
     pub to: [Option<DisjointSlice<'a>>; MAX_COMPONENTS],
     /// The summary maps.
-    pub maps: Option<[DisjointSlice<'a, f32>; 4]>,
+    pub maps: Option<Marks<'a>>,
 }
 
 /// Tiles under way, on ground and under a forcing that are everywhere the same (`UNIFORM`) or not. All by value: a number
@@ -58,7 +59,7 @@ struct Strip<'a, const D: usize, const UNIFORM: bool, L: SimdVector, T: Scheme<D
     /// Ground and forcing where they are uniform, else of one of the cells.
     uniform: (T::Ground, T::Forcing),
     to: [*mut f64; MAX_COMPONENTS],
-    maps: Option<&'a [DisjointSlice<'a, f32>; 4]>,
+    maps: Option<&'a Marks<'a>>,
     outlets: &'a [OutletFace],
     spacing: Spacing<D, L>,
     reach: usize,

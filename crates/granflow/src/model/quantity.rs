@@ -77,8 +77,6 @@ pub struct Quantity {
     pub kind: Kind,
     /// Is the largest value of the map a number of `summary.json`, called `<name>_max`?
     pub maximum: bool,
-    /// Is it a thickness, so that a raster shows 0 where it is thinner than a film?
-    pub thickness: bool,
     /// Is it stored in 64 bits whatever precision the case asks for?
     pub exact: bool,
     /// Does a fixed quantity stand among the maps of csv and vtk files too?
@@ -92,8 +90,8 @@ impl Quantity {
         long_name: &'static str,
         units: [&'static str; 2],
     ) -> Quantity {
-        let (maximum, thickness, exact, tabulated) = (false, false, false, false);
-        Quantity { name, long_name, units, at: At::Cells, kind, maximum, thickness, exact, tabulated }
+        let (maximum, exact, tabulated) = (false, false, false);
+        Quantity { name, long_name, units, at: At::Cells, kind, maximum, exact, tabulated }
     }
 
     /// A series in the cells; `units` are those in the papers' scaling and in SI.
@@ -124,12 +122,6 @@ impl Quantity {
     #[must_use]
     pub const fn with_maximum(self) -> Quantity {
         Quantity { maximum: true, ..self }
-    }
-
-    /// The same with [`Quantity::thickness`].
-    #[must_use]
-    pub const fn as_thickness(self) -> Quantity {
-        Quantity { thickness: true, ..self }
     }
 
     /// The same with [`Quantity::exact`].

@@ -23,26 +23,49 @@ use crate::model::{Domain, Model, Quantity, Words};
 pub static MODEL: Model = Model {
     name: "savage_hutter",
     quantities: &[
-        Quantity::series("thickness", "thickness normal to the bed", ["1", "m"]).as_thickness(),
+        Quantity::series("thickness", "thickness normal to the bed", ["1", "m"]),
         Quantity::series("velocity_x", "velocity along x", ["1", "m s-1"]),
         Quantity::series("velocity_y", "velocity along y", ["1", "m s-1"]),
         Quantity::series("surface", "elevation of the free surface", ["1", "m"]),
         Quantity::series("speed", "speed along the bed", ["1", "m s-1"]),
         Quantity::fixed("bed", "elevation of the bed", ["1", "m"]).exact(),
-        Quantity::map("peak_thickness", "largest thickness normal to the bed", ["1", "m"])
-            .as_thickness()
-            .with_maximum(),
-        Quantity::map("peak_speed", "largest speed along the bed", ["1", "m s-1"]).with_maximum(),
-        Quantity::map("peak_pressure", "largest dynamic pressure, density times speed squared", ["1", "kPa"])
-            .with_maximum(),
-        Quantity::map("arrival_time", "time at which the mass arrived", ["1", "s"]),
-        Quantity::map("stopping_time", "time at which the cell last moved", ["1", "s"]),
-        Quantity::map("deposit", "thickness normal to the bed at the end", ["1", "m"])
-            .as_thickness()
-            .with_maximum(),
+        Quantity::map(
+            "peak_thickness",
+            "largest thickness normal to the bed, where thicker than the threshold",
+            ["1", "m"],
+        )
+        .with_maximum(),
+        Quantity::map(
+            "peak_speed",
+            "largest speed along the bed while thicker than the threshold",
+            ["1", "m s-1"],
+        )
+        .with_maximum(),
+        Quantity::map(
+            "peak_pressure",
+            "largest dynamic pressure, density times speed squared, while thicker than the threshold",
+            ["1", "kPa"],
+        )
+        .with_maximum(),
+        Quantity::map(
+            "arrival_time",
+            "time at which the cell was first thicker than the threshold",
+            ["1", "s"],
+        ),
+        Quantity::map(
+            "stopping_time",
+            "time at which the cell last moved while thicker than the threshold",
+            ["1", "s"],
+        ),
+        Quantity::map(
+            "deposit",
+            "thickness normal to the bed at the end, where thicker than the threshold",
+            ["1", "m"],
+        )
+        .with_maximum(),
         Quantity::map(
             "yield_margin",
-            "pull at the end as a share of the largest that friction holds",
+            "pull at the end as a share of the largest that friction holds, where there is a deposit",
             ["1", "1"],
         )
         .with_maximum(),

@@ -30,8 +30,11 @@ pub struct Summary {
     pub time: f64,
     /// Why the run ended.
     pub stop_reason: StopReason,
-    /// When the mass came to rest, if it did.
+    /// The last time at which a layer thicker than the threshold moved, if the run ended at rest; of a model without maps of peaks
+    /// and times when it came to rest.
     pub stopping_time: Option<f64>,
+    /// Thickness normal to the bed that a layer must exceed to count; none where there are no maps of peaks and times.
+    pub threshold: Option<f64>,
     /// Mass at the start.
     #[serde(deserialize_with = "number")]
     pub mass_initial: f64,
@@ -50,10 +53,10 @@ pub struct Summary {
     /// Mass in cells thinner than a film.
     #[serde(deserialize_with = "number")]
     pub film_volume: f64,
-    /// Largest speed at the end.
+    /// Largest speed at the end, films too.
     #[serde(deserialize_with = "number")]
     pub max_speed_final: f64,
-    /// Largest speed of the run.
+    /// Largest speed of the run, of layers thicker than the threshold.
     #[serde(deserialize_with = "number")]
     pub max_speed: f64,
     /// Horizontal length from the highest released cell to the farthest cell reached, where that is defined.
@@ -142,6 +145,7 @@ pub(super) mod tests {
             time: 10.0,
             stop_reason: StopReason::AtRest,
             stopping_time: Some(9.5),
+            threshold: Some(0.01),
             mass_initial: 8.0,
             mass_final: 8.0,
             mass_in: 0.0,
@@ -171,8 +175,8 @@ pub(super) mod tests {
             text.lines().filter_map(|line| line.trim().strip_prefix('"')?.split('"').next()).collect();
         assert_eq!(
             keys.join(", "),
-            "title, model, scheme, cells, steps, time, stop_reason, stopping_time, mass_initial, mass_final, mass_in, \
-             mass_out, mass_error, film_volume, max_speed_final, max_speed, runout, reach_angle, wall_seconds, \
+            "title, model, scheme, cells, steps, time, stop_reason, stopping_time, threshold, mass_initial, mass_final, \
+             mass_in, mass_out, mass_error, film_volume, max_speed_final, max_speed, runout, reach_angle, wall_seconds, \
              stepping_seconds, cell_updates_per_second, threads, version, deposit_area, peak_thickness_max"
         );
         for null in ["max_speed", "runout", "reach_angle", "deposit_area"] {

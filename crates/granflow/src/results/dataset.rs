@@ -5,7 +5,7 @@ use crate::output::Precision;
 use crate::output::netcdf::{Axis, Dataset, Values, Variable};
 
 /// What `result.nc` says of a run in words.
-#[derive(Debug, Clone, PartialEq, Eq, Default)]
+#[derive(Debug, Clone, PartialEq, Default)]
 pub struct About {
     /// Title of the run.
     pub title: String,
@@ -19,6 +19,8 @@ pub struct About {
     pub scheme: String,
     /// Why the run ended.
     pub stop_reason: String,
+    /// Thickness that a layer must exceed to count in peaks and times (units of the thickness); none where there are no such maps.
+    pub threshold: Option<f64>,
 }
 
 /// Everything that `result.nc` holds of a run: the series by name, one value per instant of `times`, then what is
@@ -50,18 +52,20 @@ pub fn dataset<'a>(
             variables.push(variable(plane, quantity, false, precision, Values::Static(map)));
         }
     }
-    let About { title, history, case, case_text, scheme, stop_reason } = about;
-    let attributes = [
+    let About { title, history, case, case_text, scheme, stop_reason, threshold } = about;
+    let mut attributes = vec![
         ("model", plane.model().name.to_owned()),
         ("scheme", scheme),
         ("stop_reason", stop_reason),
         ("case_text", case_text),
     ];
+    let unit = plane.domain.units().label(" m");
+    attributes.extend(threshold.map(|threshold| ("threshold", format!("{threshold}{unit}"))));
     Ok(Dataset {
         title,
         history,
         case,
-        attributes: attributes.map(|(name, value)| (name.to_owned(), value)).into(),
+        attributes: attributes.into_iter().map(|(name, value)| (name.to_owned(), value)).collect(),
         axes: axes(plane, times),
         variables,
         crs: plane.domain.crs(),

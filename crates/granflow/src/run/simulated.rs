@@ -50,6 +50,10 @@ pub trait Physics<const D: usize>: Send + Sync + 'static {
     fn film(&self) -> f64 {
         0.0
     }
+    /// Thickness that a layer must exceed to count in the maps of peaks and times (units of the thickness, normal to the bed).
+    fn threshold(&self) -> f64 {
+        0.0
+    }
     /// Set the forcing (sources) before a step that ends at `until` at the latest; returns the time at which it changes again.
     fn prepare(&mut self, _simulation: &mut Simulation<D, Self::Scheme>, _until: f64) -> f64 {
         f64::INFINITY
@@ -102,7 +106,7 @@ impl<const D: usize, P: Physics<D>> Simulated<D, P> {
     /// The run of a simulation whose cells lie on `plane`.
     pub fn new(mut simulation: Simulation<D, P::Scheme>, physics: P, plane: Plane) -> Self {
         if physics.has_speed() {
-            simulation.keep_maps();
+            simulation.keep_maps(physics.threshold());
         }
         let totals = simulation.totals();
         let record = Record {

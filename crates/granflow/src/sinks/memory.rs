@@ -30,6 +30,8 @@ pub struct Recording {
     pub plane: Plane,
     /// Name of the scheme.
     pub scheme: String,
+    /// Thickness that a layer must exceed to count in peaks and times (units of the thickness); none where there are no such maps.
+    pub threshold: Option<f64>,
     /// The instants.
     pub times: Vec<f64>,
     /// The fields by name: one array for each instant, x fastest, the first row in the south.
@@ -59,6 +61,7 @@ impl Memory {
         let recording = Recording {
             plane: run.place(),
             scheme: run.scheme().to_owned(),
+            threshold: run.threshold(),
             times: Vec::new(),
             fields: kept.iter().map(|(k, _)| (series[*k].name.clone(), Vec::new())).collect(),
             ledger: Vec::new(),
@@ -127,7 +130,7 @@ impl Recording {
             .fields
             .iter()
             .map(|(name, values)| (name.as_str(), Values::Series(values.as_slice().into())));
-        let about = About { scheme: self.scheme.clone(), ..About::default() };
+        let about = About { scheme: self.scheme.clone(), threshold: self.threshold, ..About::default() };
         let data =
             dataset(&self.plane, Precision::F64, self.times.clone(), series.collect(), &self.maps, about);
         data.map_err(|problem| Error::invalid(path, problem))?.write(path, None)

@@ -1,9 +1,9 @@
 //! A vector of cells: its new states, and what is watched of them.
 
 use super::{Around, Strip};
-use crate::disjoint::DisjointSlice;
 use crate::field::MAX_COMPONENTS;
 use crate::lanes::SimdVector;
+use crate::observe::Marks;
 use crate::sweep::reducer::TileReducer;
 use crate::sweep::scratch::Row;
 use granflow_model::scheme::{Cell, Components, Diagnostics, Faces, Scheme};
@@ -116,39 +116,35 @@ impl<const D: usize, const UNIFORM: bool, L: SimdVector, T: Scheme<D, L>> Strip<
         }
     }
 
-    /// Bring the maps of peaks and times up to date.
+    /// Bring the maps of peaks and times up to date where the layer is thicker than the threshold.
     ///
     /// # Safety
     /// The places of `mask` belong to these tiles.
     #[inline(always)]
-    unsafe fn mark_maps(
-        &self,
-        maps: &[DisjointSlice<f32>; 4],
-        place: usize,
-        mask: L::Mask,
-        watch: &Diagnostics<L>,
-    ) {
-        let [thickness, speed, arrival, stop] = maps;
+    unsafe fn mark_maps(&self, maps: &Marks, place: usize, mask: L::Mask, watch: &Diagnostics<L>) {
+        let thick = mask & L::splat(maps.threshold).lt(watch.thickness);
+        if !L::any(thick) {
+            return;
+        }
         let (zero, time) = (L::zero(), L::splat(self.time));
+        let peaks = [(&maps.peak_thickness, watch.thickness), (&maps.peak_speed, watch.speed_squared.sqrt())];
         // SAFETY: as the caller promises.
         unsafe {
-            for (map, value) in [(thickness, watch.thickness), (speed, watch.speed_squared.sqrt())] {
-                let higher = mask & map.get::<L>(place, mask).lt(value);
+            for (map, value) in peaks {
+                let seen: L = map.get(place, thick);
+                let higher = thick & (seen.lt(value) | !seen.equals(seen));
                 if L::any(higher) {
                     map.put(place, higher, value);
                 }
             }
-            let thick = mask & zero.lt(watch.volume) & watch.film.equals(zero);
-            if L::any(thick) {
-                let seen: L = arrival.get(place, mask);
-                let first = thick & !seen.equals(seen);
-                if L::any(first) {
-                    arrival.put(place, first, time);
-                }
+            let seen: L = maps.arrival_time.get(place, thick);
+            let first = thick & !seen.equals(seen);
+            if L::any(first) {
+                maps.arrival_time.put(place, first, time);
             }
-            let moves = mask & zero.lt(watch.speed_squared);
+            let moves = thick & zero.lt(watch.speed_squared);
             if L::any(moves) {
-                stop.put(place, moves, time);
+                maps.stopping_time.put(place, moves, time);
             }
         }
     }

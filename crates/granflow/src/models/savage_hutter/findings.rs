@@ -24,6 +24,7 @@ pub(super) fn findings(summary: &Summary, film: f64) -> Findings {
             figure("Runout", summary.runout, " m"),
             figure("Reach angle", summary.reach_angle, "°"),
             KeyFigure { name: "Ended because".into(), value: summary.stop_reason.to_string() },
+            figure("Counted above", summary.threshold, " m"),
             figure("Stopping time", summary.stopping_time, " s"),
             figure("Simulated time", Some(summary.time), " s"),
             figure("Largest speed", Some(summary.max_speed), " m/s"),

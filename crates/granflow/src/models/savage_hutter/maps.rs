@@ -1,7 +1,7 @@
 //! The figures of a run on a mountain: shaded maps, the section along the path, the history; the animation.
 
 use super::path::{PathLine, path};
-use super::terrain::{REACHED, TerrainDomain};
+use super::terrain::TerrainDomain;
 use crate::model::{Drawing, Instants, Scene, View, colour_limit, history};
 use crate::output;
 use crate::output::figures::{
@@ -24,6 +24,8 @@ struct Background<'a> {
     bed: &'a [f64],
     release: Vec<Vec<[f64; 2]>>,
     footprint: Vec<Vec<[f64; 2]>>,
+    /// The thickness from which a layer is drawn.
+    drawn: f64,
     path: Option<PathLine>,
 }
 
@@ -46,7 +48,8 @@ impl<'a> Background<'a> {
             extent,
             bed: &raster.values,
             release: outline(&release, terrain.release_threshold()),
-            footprint: view.map("peak_thickness").map_or(Vec::new(), |map| outline(map, REACHED)),
+            footprint: view.map("peak_thickness").map_or(Vec::new(), |map| outline(map, terrain.threshold)),
+            drawn: terrain.drawn(),
             path: None,
         }
     }
@@ -100,6 +103,8 @@ struct Layer<'s> {
     values: &'s [f64],
     /// Shown is where this is thick.
     thickness: &'s [f64],
+    /// The thickness from which a layer is drawn.
+    drawn: f64,
     /// The largest value that is shown, and where the colours end.
     most: f64,
     limit: f64,
@@ -111,7 +116,7 @@ impl Layer<'_> {
     }
 
     fn threshold(&self) -> f64 {
-        if self.is_thickness() { REACHED } else { -0.5 }
+        if self.is_thickness() { self.drawn } else { -0.5 }
     }
 
     /// The values as they are shown, while they are. Films are fast and thin: a figure shows what a person would
@@ -119,7 +124,7 @@ impl Layer<'_> {
     fn shown(&self) -> Vec<f64> {
         let value = |(&v, &h): (&f64, &f64)| match v {
             _ if self.is_thickness() => v,
-            v if h > REACHED && v.is_finite() => v,
+            v if h > self.drawn && v.is_finite() => v,
             _ => NOWHERE,
         };
         self.values.iter().zip(self.thickness).map(value).collect()
@@ -128,7 +133,7 @@ impl Layer<'_> {
     /// Find its range.
     fn ranged(mut self) -> Self {
         let shown = self.shown();
-        let least = if self.is_thickness() { REACHED } else { 0.0 };
+        let least = if self.is_thickness() { self.drawn } else { 0.0 };
         self.limit = colour_limit(shown.iter().copied().filter(|&v| v > least));
         self.most = shown.iter().fold(0.0_f64, |most, v| most.max(*v));
         self
@@ -165,7 +170,8 @@ pub(super) fn figures<'a>(view: &'a View<'a>, terrain: &'a TerrainDomain) -> Vec
     let layers = plan.into_iter().filter_map(|(name, label, unit, colours)| {
         let values = view.map(name)?;
         let thickness = if name == "deposit" { values } else { peak };
-        Some(Layer { name, label, unit, colours, values, thickness, most: 0.0, limit: 0.0 }.ranged())
+        let (drawn, most, limit) = (ground.drawn, 0.0, 0.0);
+        Some(Layer { name, label, unit, colours, values, thickness, drawn, most, limit }.ranged())
     });
     let layers: Vec<Layer> = layers.collect();
     // Before the maps are drawn side by side: most of them show the same box of the mountain.
@@ -191,14 +197,14 @@ fn map<'a>(
     ground: Arc<Background<'a>>,
     relief: Arc<Option<Relief>>,
 ) -> Drawing<'a> {
-    let Layer { name, label, unit, most, limit, .. } = layer;
+    let Layer { name, label, unit, drawn, most, limit, .. } = layer;
     let clipped = if limit < most { ", colours end at the value that 0.2 % of the cells exceed" } else { "" };
     let of = if name == "deposit" { "where it is" } else { "where the flow was" };
     let what = format!("{label}, largest {} {unit}{clipped}", short(most));
     let subtitle = format!("{what}; {}", view.subtitle);
     let lines = "; dashed: the edge of all that was reached, and the path of the section";
     let lines = if name == "deposit" { lines } else { "" };
-    let mut caption = format!("{what}; shown {of} thicker than {REACHED} m{lines}.");
+    let mut caption = format!("{what}; shown {of} thicker than {drawn} m{lines}.");
     caption[..1].make_ascii_uppercase();
     Drawing::new(name, caption, move || {
         let (outlines, shown) = (layer.outlines(&ground), layer.shown());
@@ -236,7 +242,8 @@ pub(super) fn scene<'a>(
     terrain: &'a TerrainDomain,
     instants: &mut Instants<'_>,
 ) -> Result<Box<dyn Scene + 'a>, output::Error> {
-    let reached = view.map("peak_thickness").map(|peak| peak.iter().copied().filter(|&h| h > REACHED));
+    let drawn = terrain.drawn();
+    let reached = view.map("peak_thickness").map(|peak| peak.iter().copied().filter(|&h| h > drawn));
     let most = reached.map_or(0.0, colour_limit);
     let limit = if most > 0.0 { most } else { 1.0 };
     let mut scene = TerrainScene { view, ground: Background::of(view, terrain), limit, relief: None };
@@ -262,7 +269,7 @@ impl TerrainScene<'_> {
         let overlay = Overlay {
             values: fields.first().map_or(&[], Vec::as_slice),
             quantity: Axis::new("thickness h", self.view.unit("m")).over(0.0, self.limit),
-            threshold: REACHED,
+            threshold: self.ground.drawn,
             colours: Colours::Thickness,
         };
         let Background { extent, bed, .. } = self.ground;

@@ -1,7 +1,7 @@
 //! The path of a mass: the line along which most of it went, from the highest release to the farthest cell
 //! reached.
 
-use super::terrain::{REACHED, TerrainDomain};
+use super::terrain::TerrainDomain;
 use crate::model::View;
 use std::cmp::Reverse;
 use std::collections::BinaryHeap;
@@ -31,12 +31,12 @@ pub(super) fn path(view: &View, terrain: &TerrainDomain) -> Option<PathLine> {
     let (x, y) = (&view.x, &view.y);
     let columns = x.len();
     let release = &terrain.release;
-    let least = REACHED.min(0.5 * release.most());
+    let least = terrain.release_threshold();
     let released = release.iter().filter(|(_, thickness)| *thickness > least).map(|(cell, _)| cell);
     let top = released.max_by(|&a, &b| bed[a].total_cmp(&bed[b]))?;
     let apart = |a: usize, b: usize| (x[a % columns] - x[b % columns]).hypot(y[a / columns] - y[b / columns]);
     let far = (0..bed.len())
-        .filter(|&k| thickness[k] > REACHED && bed[k].is_finite())
+        .filter(|&k| thickness[k] > terrain.threshold && bed[k].is_finite())
         .max_by(|&a, &b| apart(a, top).total_cmp(&apart(b, top)))?;
 
     let flow: Vec<f64> = thickness.iter().zip(speed).map(|(h, u)| h * u).collect();

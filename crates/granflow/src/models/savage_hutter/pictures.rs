@@ -71,7 +71,15 @@ fn terrain(file: &ResultFile, centres: [&[f64]; 2]) -> Result<Arc<dyn Domain>, S
         raster: Arc::new(raster(centres, file.whole("bed")?)?),
         release: Arc::new(Sparse::of(file.first("thickness", 2)?)),
         density: f64::NAN,
+        threshold: threshold(&file.text("threshold")),
     }))
+}
+
+/// The threshold \[m\] of a file, from its attribute, as in "0.01 m"; the usual one where it has none.
+#[cfg(feature = "geo")]
+fn threshold(attribute: &str) -> f64 {
+    let number = attribute.split_whitespace().next().and_then(|number| number.parse().ok());
+    number.unwrap_or(granflow_case::terrain::THRESHOLD)
 }
 
 /// The bed on the cells with these centres.

@@ -15,9 +15,10 @@ use crate::release::Sparse;
 use std::borrow::Cow;
 use std::sync::Arc;
 
-/// A cell counts as reached above this peak thickness \[m\].
+/// The least thickness that figures draw \[m\]. Between cells they interpolate, with 0 where nothing is, so that a threshold of 0
+/// would paint the whole mountain; and no map shows a layer of less than a millimetre.
 #[cfg(feature = "files")]
-pub(super) const REACHED: f64 = 0.1;
+const LEAST_DRAWN: f64 = 1e-3;
 /// The peak pressure that counts as reached, for the runout \[kPa\].
 #[cfg(feature = "files")]
 const REACHED_PRESSURE: f64 = 1.0;
@@ -32,6 +33,8 @@ pub struct TerrainDomain {
     pub release: Arc<Sparse>,
     /// Density of the mass \[kg/m^3\]; NaN where a file does not tell it.
     pub density: f64,
+    /// Thickness normal to the bed that a layer must exceed to count: outside that its maps have no value \[m\].
+    pub threshold: f64,
 }
 
 impl Domain for TerrainDomain {
@@ -99,18 +102,24 @@ impl Domain for TerrainDomain {
         let mut all = vec![outline("release", &release, self.release_threshold())];
         for name in ["deposit", "peak_thickness"] {
             let map = maps.iter().find(|(known, _)| *known == name);
-            all.extend(map.map(|(_, map)| outline(name, map, REACHED)));
+            all.extend(map.map(|(_, map)| outline(name, map, self.threshold)));
         }
         all
     }
 }
 
 impl TerrainDomain {
-    /// The thickness that outlines the release: as of the other outlines, less where all is thinner.
+    /// The thickness from which a layer is drawn \[m\]: the threshold, but not less than [`LEAST_DRAWN`].
+    #[cfg(feature = "files")]
+    pub(super) fn drawn(&self) -> f64 {
+        self.threshold.max(LEAST_DRAWN)
+    }
+
+    /// The thickness that outlines the release \[m\]: that from which a layer is drawn, less where all is thinner.
     #[cfg(feature = "files")]
     pub(super) fn release_threshold(&self) -> f64 {
         let largest = self.release.most();
-        if largest > 0.0 { REACHED.min(0.5 * largest) } else { REACHED }
+        if largest > 0.0 { self.drawn().min(0.5 * largest) } else { self.drawn() }
     }
 
     /// Horizontal length, and drop, from the highest released cell to the farthest that the mass reached with a

@@ -14,19 +14,15 @@ pub(super) static GEOTIFF: Format = Format::of(
     |work| Ok(write(work.run)?),
 );
 
-/// Write the maps of a run on a raster: nodata outside the elevation model, and for times where nothing came;
-/// thicknesses below the film are 0.
+/// Write the maps of a run on a raster: nodata outside the elevation model, and where they have no value, since nothing thicker
+/// than the threshold came.
 fn write(run: &Finished) -> Result<Vec<PathBuf>, RasterError> {
     let Some(bed) = run.plane.domain.raster() else { return Ok(Vec::new()) };
     let folder = run.directory.join("rasters");
     std::fs::create_dir_all(&folder).map_err(|source| RasterError::Io { path: folder.clone(), source })?;
     let write = |quantity: &&Quantity| -> Option<Result<PathBuf, RasterError>> {
         let map = run.map(quantity.name)?;
-        let value = |cell: usize| match map[cell] {
-            _ if bed.values[cell].is_nan() => f64::NAN,
-            value if quantity.thickness && value < run.film => 0.0,
-            value => value,
-        };
+        let value = |cell: usize| if bed.values[cell].is_nan() { f64::NAN } else { map[cell] };
         let path = folder.join(format!("{}.tif", quantity.name));
         Some(bed.write_values(&path, value).map(|()| path))
     };

@@ -42,7 +42,8 @@ impl Ending {
         Ending::with(files, plane, maps, summary)
     }
 
-    fn with(files: &Files, plane: Plane, maps: Maps, summary: Summary) -> Ending {
+    fn with(files: &Files, plane: Plane, maps: Maps, mut summary: Summary) -> Ending {
+        count(&maps, &mut summary);
         Ending {
             directory: files.directory.clone(),
             files: files.plan.output.files.clone(),
@@ -63,7 +64,21 @@ impl Ending {
     }
 }
 
-/// The figures of the run as they stand.
+/// Put the largest of the maps of peaks and times, in which films do not count, for the figures of the run.
+fn count(maps: &Maps, summary: &mut Summary) {
+    let largest = |map: &str| -> Option<f64> {
+        let (_, values) = maps.iter().find(|(name, _)| *name == map)?;
+        Some(values.iter().copied().fold(f64::NAN, f64::max))
+    };
+    if let Some(speed) = largest("peak_speed") {
+        summary.max_speed = speed.max(0.0);
+    }
+    if let Some(time) = largest("stopping_time") {
+        summary.stopping_time = summary.stopping_time.map(|_| time).filter(|time| time.is_finite());
+    }
+}
+
+/// The figures of the run as they stand; those that the maps know better follow in [`count`].
 fn summary(files: &Files, run: &dyn Run, stop_reason: StopReason) -> Summary {
     let (stepper, record, plan, plane) = (run.stepper(), run.record(), &files.plan, run.plane());
     let totals = run.totals();
@@ -80,6 +95,7 @@ fn summary(files: &Files, run: &dyn Run, stop_reason: StopReason) -> Summary {
         steps: run.steps(),
         time: run.time(),
         stop_reason,
+        threshold: run.threshold(),
         stopping_time: (ended && !run.is_equilibrium()).then(|| run.time()),
         mass_initial: initial,
         mass_final: totals.volume,

@@ -27,6 +27,7 @@ pub struct Avalanche<'a, const D: usize, B> {
     law: Law,
     second_order: bool,
     film: f64,
+    threshold: f64,
     step: Option<StepSize>,
     thickness: Field<'a, D, f64>,
     velocity: Field<'a, D, [f64; D]>,
@@ -40,13 +41,14 @@ pub struct Slope {
 }
 
 impl<'a, const D: usize, B> Avalanche<'a, D, B> {
-    fn over(grid: Grid<D>, bed: B) -> Self {
+    fn over(grid: Grid<D>, bed: B, threshold: f64) -> Self {
         Avalanche {
             grid,
             bed,
             law: Law::Coulomb(Coulomb { mu: 0.4 }),
             second_order: false,
             film: 1e-6,
+            threshold,
             step: None,
             thickness: Box::new(|_| 0.0),
             velocity: Box::new(|_| [0.0; D]),
@@ -84,6 +86,12 @@ impl<'a, const D: usize, B> Avalanche<'a, D, B> {
     pub fn film(self, film: f64) -> Self {
         Avalanche { film, ..self }
     }
+    /// Thickness normal to the bed that a layer must exceed to count in peaks, times and deposit \[m\]: 0.01 on terrain and 1e-3 on
+    /// a plane unless it is said. It changes nothing of what is computed.
+    #[must_use]
+    pub fn threshold(self, threshold: f64) -> Self {
+        Avalanche { threshold, ..self }
+    }
     /// Another step than the scheme suggests.
     #[must_use]
     pub fn step(self, step: StepSize) -> Self {
@@ -101,13 +109,14 @@ impl<'a, const D: usize, B> Avalanche<'a, D, B> {
         G: Bed<D, f64> + 'static,
         Balanced<Law, G>: Kernel<D, State = Flow<D, f64>, Ground = G>,
     {
-        let Avalanche { grid, law, second_order, film, step, thickness, velocity, .. } = self;
+        let Avalanche { grid, law, second_order, film, threshold, step, thickness, velocity, .. } = self;
         let (name, scheme) = match second_order {
             false => ("balanced", Balanced::<Law, G>::first(law, film)),
             true => ("balanced_2", Balanced::<Law, G>::second(law, film)),
         };
         let step = step.unwrap_or(StepSize::Courant(scheme.suggested_courant()));
         check_law(law)?;
+        check_value("threshold", threshold, "a finite number >= 0", |threshold| threshold >= 0.0)?;
         for number in 0..grid.count() {
             let place = grid.centre(grid.index(number));
             check_value("thickness", thickness(place), "a finite number >= 0 at every place", |h| h >= 0.0)?;
@@ -123,7 +132,7 @@ impl<'a, const D: usize, B> Avalanche<'a, D, B> {
         };
         let simulation = Simulation::new(scheme, grid, step, &ground, state)?;
         let plane = Plane::of(&grid, Arc::new(domain));
-        let physics = Flowing::<Balanced<Law, G>>::new(name, film, on_terrain);
+        let physics = Flowing::<Balanced<Law, G>>::new(name, film, on_terrain).with_threshold(threshold);
         Ok(Box::new(Simulated::new(simulation, physics, plane)))
     }
 }
@@ -142,7 +151,7 @@ impl<'a, const D: usize> Avalanche<'a, D, Slope> {
     /// On a plane of this inclination \[radians\], downhill along +x, under gravity.
     #[must_use]
     pub fn on_plane(grid: Grid<D>, angle: f64) -> Self {
-        Self::over(grid, Slope { angle, gravity: GRAVITY, epsilon: 1.0 })
+        Self::over(grid, Slope { angle, gravity: GRAVITY, epsilon: 1.0 }, granflow_case::chute::THRESHOLD)
     }
     /// In the papers' scaling: lengths by L, heights by H = epsilon L, times by sqrt(L/g).
     #[must_use]
@@ -187,7 +196,11 @@ impl<'a> Avalanche<'a, 2, granflow_geo::terrain::Terrain> {
         let curvature = granflow_geo::terrain::Curvature::Length(window);
         let edges = [[granflow_model::scheme::Boundary::Absorbing; 2]; 2];
         let grid = Grid { boundary: edges, ..grid };
-        Self::over(grid, granflow_geo::terrain::Terrain::new(bed, curvature))
+        Self::over(
+            grid,
+            granflow_geo::terrain::Terrain::new(bed, curvature),
+            granflow_case::terrain::THRESHOLD,
+        )
     }
     /// The run; nothing is computed yet.
     ///
@@ -210,6 +223,7 @@ impl<'a> Avalanche<'a, 2, granflow_geo::terrain::Terrain> {
             raster: Arc::new(terrain.bed.with_values(Vec::new())),
             release: Arc::new(release),
             density: f64::NAN,
+            threshold: self.threshold,
         };
         self.run(domain, true, |cell| super::terrain::ground_at(&terrain, GRAVITY, cell))
     }

@@ -61,7 +61,8 @@ where
         Flow { h, q: std::array::from_fn(|k| h * u[k]) }
     };
     let simulation = Simulation::new(scheme, grid, step_size(run), ground, state)?;
-    Ok(Box::new(Simulated::new(simulation, Flowing::<S>::new(run.scheme, film, false), plane)))
+    let physics = Flowing::<S>::new(run.scheme, film, false).with_threshold(run.output.threshold);
+    Ok(Box::new(Simulated::new(simulation, physics, plane)))
 }
 
 fn grid<const D: usize>(plan: &Plan) -> Grid<D> {

@@ -22,6 +22,7 @@ const FAST: f64 = 30.0;
 pub(crate) fn chute(run: &RunPlan, plan: OnChute) -> Result<Vec<Line>, StartError> {
     let order = if run.scheme == "balanced_2" { "second order" } else { "first order" };
     let mut lines = case(run, material(&plan.material), &format!("{order}, film {:e}, ", plan.scheme.film));
+    lines.push(threshold(run, ""));
     lines.extend(grid(&plan));
     lines.extend(start(run, &mut *chute::start(run, plan)?));
     Ok(lines)
@@ -35,6 +36,7 @@ pub(crate) fn terrain(run: &RunPlan, plan: &OnTerrain) -> Result<Vec<Line>, Star
         Order::Second => "second order",
     };
     let mut lines = case(run, material(&plan.material), &format!("{order}, film {:e}, ", plan.scheme.film));
+    lines.push(threshold(run, " m"));
     let (bed, release) = terrain::load(run, plan)?;
     lines.extend(mountain(&bed, plan.material.gravity));
     lines.extend(start(run, &mut *terrain::simulate(run, plan, bed, release)?));
@@ -54,6 +56,12 @@ fn start(run: &RunPlan, start: &mut dyn Run) -> Vec<Line> {
     ];
     lines.extend(effort(run, bytes, rate));
     lines
+}
+
+/// What counts in the results.
+fn threshold(run: &RunPlan, unit: &str) -> Line {
+    let threshold = run.output.threshold;
+    ("counted", format!("layers thicker than {threshold}{unit}, in peaks, times and deposit"))
 }
 
 fn material(material: &Material) -> Vec<Line> {

@@ -1,6 +1,7 @@
 //! The Savage-Hutter equations as a run shows them: thickness and velocity, peaks and times.
 
 use crate::run::{CellOf, Field, Maps, Numbers, Physics, Record, Value};
+use granflow_case::{chute, terrain};
 use granflow_engine::simulation::Simulation;
 use granflow_model::savage_hutter::Flow;
 use granflow_model::savage_hutter::ground::Bed;
@@ -11,15 +12,23 @@ use std::marker::PhantomData;
 pub struct Flowing<S> {
     name: &'static str,
     film: f64,
+    threshold: f64,
     /// The bed has an elevation: surface and speed are shown too.
     on_terrain: bool,
     scheme: PhantomData<fn() -> S>,
 }
 
 impl<S> Flowing<S> {
-    /// Under this name; a thinner layer than `film` is held.
+    /// Under this name; a thinner layer than `film` is held. The threshold is the one of a case that says none.
     pub fn new(name: &'static str, film: f64, on_terrain: bool) -> Self {
-        Flowing { name, film, on_terrain, scheme: PhantomData }
+        let threshold = if on_terrain { terrain::THRESHOLD } else { chute::THRESHOLD };
+        Flowing { name, film, threshold, on_terrain, scheme: PhantomData }
+    }
+    /// The same, where a layer counts in peaks, times and deposit if it is thicker than `threshold` (units of the thickness,
+    /// normal to the bed).
+    #[must_use]
+    pub fn with_threshold(self, threshold: f64) -> Self {
+        Flowing { threshold, ..self }
     }
 }
 
@@ -62,12 +71,23 @@ where
     fn film(&self) -> f64 {
         self.film
     }
+    fn threshold(&self) -> f64 {
+        self.threshold
+    }
     fn elevation(&self, simulation: &Simulation<D, S>) -> Vec<f64> {
         simulation.map(|cell| cell.ground.elevation())
     }
     fn maps(&self, simulation: &mut Simulation<D, S>) -> Maps {
-        let deposit = simulation.map(thickness::<D, S>);
-        vec![("deposit", deposit), ("yield_margin", simulation.yield_ratios())]
+        let threshold = self.threshold;
+        let deposit = simulation.map(|cell| match thickness::<D, S>(cell) {
+            h if h > threshold => h,
+            _ => f64::NAN,
+        });
+        let mut margin = simulation.yield_ratios();
+        for (margin, _) in margin.iter_mut().zip(&deposit).filter(|(_, h)| h.is_nan()) {
+            *margin = f64::NAN;
+        }
+        vec![("deposit", deposit), ("yield_margin", margin)]
     }
     fn numbers(&self, simulation: &Simulation<D, S>, _record: &Record) -> Numbers {
         let totals = simulation.totals();

@@ -48,6 +48,7 @@ pub(super) fn simulate(
         raster: Arc::new(bed.with_values(Vec::new())),
         release: Arc::new(thickness),
         density: plan.material.density,
+        threshold: run.output.threshold,
     };
     let plane = Plane::of(&grid, Arc::new(domain));
     let (law, film) = (plan.material.law, plan.scheme.film);
@@ -58,7 +59,8 @@ pub(super) fn simulate(
     let ground = move |cell| ground_at(&terrain, gravity, cell);
     let state = move |[i, j]: [usize; 2]| Flow::still(release.get(j * columns + i));
     let simulation = Simulation::new(scheme, grid, step_size(run), ground, state)?;
-    Ok(Box::new(Simulated::new(simulation, Flowing::new(run.scheme, film, true), plane)))
+    let physics = Flowing::new(run.scheme, film, true).with_threshold(run.output.threshold);
+    Ok(Box::new(Simulated::new(simulation, physics, plane)))
 }
 
 /// The ground of a cell of a mountain under `gravity` \[m/s^2\], by column and row, the first row in the south.
