@@ -134,6 +134,14 @@ const ON_A_GRID: &[Bad] = &[
     ("[time]", "[terrain]\ndem = \"dem.asc\"\n[time]", 15, &["both [grid] and [terrain]"], 2),
     ("[time]", "[[release]]\n[time]", 15, &["[[release]] needs [terrain]"], 2),
     // ranges
+    (
+        "steps = 100",
+        "steps = 100\n[output]\nthreshold = -0.01",
+        18,
+        &["`output.threshold`: found -0.01, expected a number >= 0"],
+        2,
+    ),
+    ("steps = 100", "steps = 100\n[output]\nthreshold = \"1 cm\"", 18, &["expected a number"], 2),
     ("epsilon = 0.4", "epsilon = 0", 7, &["`material.epsilon`: found 0, expected a number > 0"], 2),
     ("epsilon = 0.4", "epsilon = nan", 7, &["found NaN"], 2),
     ("cells = 240", "cells = 2", 4, &["at least 3"], 2),

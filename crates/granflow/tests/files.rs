@@ -116,9 +116,9 @@ fn every_file_of_a_mountain_opens_and_holds_the_run() {
     let deposit = raster("deposit");
     assert_eq!((deposit.columns, deposit.rows, deposit.west, deposit.south), (30, 60, 1000.0, 2000.0));
     assert_eq!(deposit.crs.as_ref().and_then(|crs| crs.epsg), Some(31287));
-    assert!(deposit.at(0, 0).is_nan() && deposit.at(5, 0) == 0.0);
+    assert!(deposit.at(0, 0).is_nan() && deposit.at(5, 0).is_nan() && deposit.range().unwrap().0 > 0.01);
     for (there, here) in deposit.values.iter().zip(run.map("deposit").unwrap()) {
-        assert!(there.is_nan() || (there - if *here < run.film { 0.0 } else { *here }).abs() < 1e-6);
+        assert!(there.is_nan() == here.is_nan() && (there.is_nan() || (there - here).abs() < 1e-6));
     }
     let (arrival, stopping) = (raster("arrival_time"), raster("stopping_time"));
     assert!(arrival.at(0, 59).is_nan(), "nothing arrived in the corner");
@@ -138,7 +138,9 @@ fn every_file_of_a_mountain_opens_and_holds_the_run() {
 
     let report = fs::read_to_string(out("report.html")).unwrap();
     let runout = run.summary.runout.unwrap().floor().to_string();
-    for part in ["A small slide", "at rest", "friction.coulomb", "Arrival time", &runout] {
+    for part in
+        ["A small slide", "Counted above", "0.01 m", "at rest", "friction.coulomb", "Arrival time", &runout]
+    {
         assert!(report.contains(part), "{part}");
     }
     assert_eq!(report.matches("data:image/png;base64,").count(), 7);
@@ -202,6 +204,63 @@ fn a_full_disk_ends_the_run_and_nothing_complete_is_lost() {
     for file in ["mass.csv", "checkpoint/frames.bin"] {
         assert!(fs::read(whole.join(file)).unwrap() == fs::read(parts.join(file)).unwrap(), "{file} differs");
     }
+}
+
+/// A small slide, its maps with this threshold, and its last states, all as bits.
+fn with_threshold(folder: &Path, threshold: f64) -> (Finished, Vec<u64>) {
+    let files =
+        format!("[\"netcdf\", \"geotiff\", \"vector\", \"figures\", \"report\"]\nthreshold = {threshold}");
+    let out = folder.join(format!("out_{threshold}"));
+    let run = begin(&slope(folder, &files), &out, false, &mut |_| false).unwrap();
+    run.write_files().unwrap();
+    let mut frames = run.frames.again().unwrap();
+    let last = frames.times().len() - 1;
+    let fields = (0..frames.fields().len()).flat_map(|field| frames.read(last, field).unwrap());
+    let state = fields.map(f64::to_bits).chain([run.summary.time.to_bits(), run.summary.steps]).collect();
+    (run, state)
+}
+
+#[test]
+fn what_was_never_thicker_than_the_threshold_has_no_value() {
+    let folder = tempfile::tempdir().unwrap();
+    let thresholds = [0.0, 0.01, 0.3, 100.0];
+    let runs = thresholds.map(|threshold| with_threshold(folder.path(), threshold));
+    let mut counted = Vec::new();
+    for (threshold, (run, state)) in thresholds.iter().zip(&runs) {
+        assert!(state == &runs[0].1, "{threshold}: what is computed does not depend on the threshold");
+        let map = |name: &str| run.map(name).unwrap();
+        let (peak, thickness) = (map("peak_thickness"), map("deposit"));
+        assert!(peak.iter().all(|h| h.is_nan() || *h >= f64::from(*threshold as f32)), "{threshold}");
+        assert!(thickness.iter().all(|h| h.is_nan() || h > threshold), "{threshold}");
+        counted.push(peak.iter().filter(|h| h.is_finite()).count());
+
+        let file = NcFile::open(run.result()).unwrap();
+        let text = file.global_attribute("threshold").unwrap().value.as_string().unwrap();
+        assert_eq!(text, format!("{threshold} m"));
+        for name in
+            ["peak_thickness", "peak_speed", "peak_pressure", "arrival_time", "stopping_time", "deposit"]
+        {
+            let stored = file.read_variable::<f64>(name).unwrap();
+            let raster = Raster::read(&run.directory.join(format!("rasters/{name}.tif"))).unwrap();
+            let whole = ["peak_thickness", "peak_speed", "peak_pressure", "arrival_time"].contains(&name);
+            for (k, value) in map(name).iter().enumerate() {
+                let nowhere = [value, &stored.as_slice().unwrap()[k], &raster.values[k]].map(|v| v.is_nan());
+                assert_eq!(nowhere, [value.is_nan(); 3], "{threshold}: {name}, cell {k}");
+                assert!(value.is_nan() == peak[k].is_nan() || (!whole && value.is_nan()), "{name}, cell {k}");
+            }
+        }
+        let largest = |name: &str| map(name).iter().copied().fold(f64::NAN, f64::max);
+        let summary = &run.summary;
+        assert_eq!(summary.threshold, Some(*threshold));
+        assert_eq!(summary.max_speed, largest("peak_speed").max(0.0));
+        let moved = Some(largest("stopping_time")).filter(|time| time.is_finite());
+        assert_eq!((summary.stopping_time, summary.stop_reason), (moved, StopReason::AtRest));
+        assert!(moved.is_none_or(|time| time <= f64::from(summary.time as f32)));
+    }
+    assert!(counted.is_sorted_by(|more, fewer| more > fewer) && counted[3] == 0, "{counted:?}");
+    let [_, (usual, _), _, (none, _)] = &runs;
+    assert!(usual.summary.runout.is_some() && usual.summary.stopping_time < Some(usual.summary.time));
+    assert_eq!((none.summary.runout, none.summary.stopping_time, none.summary.max_speed), (None, None, 0.0));
 }
 
 #[test]
