@@ -6,7 +6,7 @@ use granflow::model::{At, Domain, Model, Plane, Quantity};
 use granflow::output::Precision;
 use granflow::output::netcdf::{Dataset, Values};
 use granflow::output::summary::StopReason;
-use granflow::raster::Raster;
+use granflow::raster::{Raster, RasterError};
 use granflow::results::{About, FilesError, Finished, Story, check_kinds, dataset};
 use granflow::run::Run;
 use granflow::session::{Options, RunError};
@@ -241,10 +241,14 @@ fn what_was_never_thicker_than_the_threshold_has_no_value() {
             ["peak_thickness", "peak_speed", "peak_pressure", "arrival_time", "stopping_time", "deposit"]
         {
             let stored = file.read_variable::<f64>(name).unwrap();
-            let raster = Raster::read(&run.directory.join(format!("rasters/{name}.tif"))).unwrap();
+            // A raster of nodata alone is written, and refused where it is read as an elevation.
+            let raster = match Raster::read(&run.directory.join(format!("rasters/{name}.tif"))) {
+                Err(RasterError::Empty { .. }) if counted.last() == Some(&0) => vec![f64::NAN; peak.len()],
+                read => read.unwrap().values,
+            };
             let whole = ["peak_thickness", "peak_speed", "peak_pressure", "arrival_time"].contains(&name);
             for (k, value) in map(name).iter().enumerate() {
-                let nowhere = [value, &stored.as_slice().unwrap()[k], &raster.values[k]].map(|v| v.is_nan());
+                let nowhere = [value, &stored.as_slice().unwrap()[k], &raster[k]].map(|v| v.is_nan());
                 assert_eq!(nowhere, [value.is_nan(); 3], "{threshold}: {name}, cell {k}");
                 assert!(value.is_nan() == peak[k].is_nan() || (!whole && value.is_nan()), "{name}, cell {k}");
             }

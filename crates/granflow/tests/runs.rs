@@ -35,6 +35,11 @@ fn bits(run: &dyn Run) -> Vec<u64> {
         .collect()
 }
 
+/// The bits of the maps of peaks and times, which have no value in most cells.
+fn peaks(run: &dyn Run) -> Vec<u64> {
+    run.peaks().iter().flat_map(|(_, map)| map.iter().map(|value| value.to_bits())).collect()
+}
+
 #[test]
 fn a_run_is_saved_and_taken_up_again_bit_for_bit() {
     for text in [PILE, SLIDE] {
@@ -201,7 +206,7 @@ fn what_is_looked_at_changes_nothing_of_what_is_computed() {
             assert_eq!((run.time(), run.steps()), (alone.time(), alone.steps()));
             assert_eq!(run.stepper().outflow(), alone.stepper().outflow());
             assert_eq!(run.stepper().poured(), alone.stepper().poured());
-            assert_eq!(run.peaks(), alone.peaks());
+            assert!(peaks(&*run) == peaks(&*alone), "frames every {every}");
             let recording = memory.finish(&mut *run);
             let (last, regular) = recording.times.split_last().unwrap();
             assert_eq!(*last, alone.time());

@@ -7,7 +7,7 @@ use std::time::Duration;
 pub struct Record {
     /// Volume at the start.
     pub initial: f64,
-    /// Largest speed.
+    /// Largest speed, of films too; that of layers which count is the largest of the map `peak_speed`.
     pub peak_speed: f64,
     /// Largest kinetic energy per density, if it is tracked.
     pub peak_energy: f64,
