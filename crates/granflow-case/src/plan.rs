@@ -72,8 +72,8 @@ pub struct OutputPlan {
     pub files: Vec<FileKind>,
     /// Precision of the numbers in them.
     pub precision: Precision,
-    /// Thickness normal to the bed that a layer must exceed to count in peaks, times and outlines (units of the thickness); 0
-    /// for a sandpile, which has none of these.
+    /// Thickness normal to the bed that a layer must exceed to count in peaks, times and outlines (units of
+    /// the thickness); 0 for a sandpile, which has none of these.
     pub threshold: f64,
 }
 

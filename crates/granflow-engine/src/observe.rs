@@ -7,8 +7,9 @@ use granflow_model::scheme::Diagnostics;
 
 /// Maps over the cells, in the padded layout of the state, in single precision.
 ///
-/// A cell counts in the states in which its layer is thicker than a threshold: a film that runs ahead of the mass, a thousandth
-/// of a millimetre thick, would else set peaks and times. All are NaN where no layer ever was thicker.
+/// A cell counts in the states in which its layer is thicker than a threshold: a film that runs ahead of the
+/// mass, a thousandth of a millimetre thick, would else set peaks and times. All are NaN where no layer ever
+/// was thicker.
 #[derive(Clone, Debug)]
 pub struct Maps {
     /// Thickness normal to the bed that a layer must exceed to count.

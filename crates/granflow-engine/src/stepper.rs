@@ -91,8 +91,8 @@ pub trait Stepper: Send + Sync {
     /// Give back the memory that only steps need, for there will be none, or none before [`Stepper::restore`].
     fn release_buffers(&mut self);
 
-    /// Keep summary maps from now on, beginning with the state as it stands; counted is what is thicker than `threshold` (units of
-    /// the thickness, normal to the bed).
+    /// Keep summary maps from now on, beginning with the state as it stands; counted is what is thicker than
+    /// `threshold` (units of the thickness, normal to the bed).
     fn keep_maps(&mut self, threshold: f64);
     /// The summary maps, where they are kept.
     fn maps(&self) -> Option<&Maps>;

@@ -23,8 +23,8 @@ pub struct Section<'a> {
     pub deposit: &'a [f64],
     /// Greatest thickness over the run, as many (m), not finite where nothing passed; may be empty.
     pub peak_thickness: &'a [f64],
-    /// Greatest speed over the run, as many (m/s), not finite where nothing passed, which is drawn as 0; may be empty, then its
-    /// panel is left out.
+    /// Greatest speed over the run, as many (m/s), not finite where nothing passed, which is drawn as 0; may
+    /// be empty, then its panel is left out.
     pub peak_speed: &'a [f64],
     /// How many times too thick deposit and flow are drawn; where `None` a round number that makes the thickest layer
     /// about a tenth of the height of the ground. The figure always says it.

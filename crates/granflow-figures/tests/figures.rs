@@ -325,6 +325,12 @@ fn sections_say_how_much_the_layers_are_exaggerated() {
     };
     let png = drawn("section", &figure);
     assert!(png.count([70, 62, 54]) > 1000 && png.count([213, 94, 0]) > 1000);
+    // No value is drawn as nothing.
+    let masked =
+        |layer: &[f64]| layer.iter().map(|&v| if v > 0.0 { v } else { f64::NAN }).collect::<Vec<f64>>();
+    let [deposit, peak, speed] = [&deposit, &peak, &speed].map(|layer| masked(layer));
+    let gaps = Section { deposit: &deposit, peak_thickness: &peak, peak_speed: &speed, ..figure };
+    assert!(drawn("section_gaps", &gaps).rgb == png.rgb);
     let alone = Section { peak_thickness: &[], peak_speed: &[], ..figure };
     assert!(drawn("section_alone", &alone).height < png.height);
 }

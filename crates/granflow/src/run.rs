@@ -50,8 +50,8 @@ pub trait Run: Send + Sync {
     fn has_speed(&self) -> bool;
     /// Thickness of a film: a thinner layer is held (units of the thickness).
     fn film(&self) -> f64;
-    /// Thickness that a layer must exceed to count in the maps of peaks and times (units of the thickness, normal to the bed); none
-    /// where there are no such maps.
+    /// Thickness that a layer must exceed to count in the maps of peaks and times (units of the thickness,
+    /// normal to the bed); none where there are no such maps.
     fn threshold(&self) -> Option<f64> {
         self.stepper().maps().map(granflow_engine::Maps::threshold)
     }

@@ -135,6 +135,10 @@ fn every_file_of_a_mountain_opens_and_holds_the_run() {
     assert_eq!(names, ["release", "deposit", "peak_thickness"]);
     let area = |k: usize| outlines["features"][k]["properties"]["area"].as_f64().unwrap();
     assert!(area(0) > 1000.0 && area(2) > area(0) && area(2) > area(1));
+    for (k, name) in ["deposit", "peak_thickness"].into_iter().enumerate() {
+        let counted = 25.0 * run.map(name).unwrap().iter().filter(|h| h.is_finite()).count() as f64;
+        assert!((area(k + 1) / counted - 1.0).abs() < 0.1, "{name}: {} of {counted}", area(k + 1));
+    }
 
     let report = fs::read_to_string(out("report.html")).unwrap();
     let runout = run.summary.runout.unwrap().floor().to_string();

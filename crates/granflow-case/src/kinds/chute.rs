@@ -19,7 +19,8 @@ mod slope;
 
 use slope::{Columns, Slope};
 
-/// The threshold on a chute where nobody says another one, in the unit of the thickness, which the papers scale to order 1.
+/// The threshold on a chute where nobody says another one, in the unit of the thickness, which the papers
+/// scale to order 1.
 pub const THRESHOLD: f64 = 1e-3;
 
 /// An avalanche on a chute, in plain numbers.

@@ -5,8 +5,8 @@ use crate::observe::Maps;
 use granflow_model::scheme::Scheme;
 
 impl<const D: usize, S: Scheme<D, f64>> Simulation<D, S> {
-    /// Keep summary maps from now on, beginning with the state as it stands; counted is what is thicker than `threshold` (units of
-    /// the thickness, normal to the bed).
+    /// Keep summary maps from now on, beginning with the state as it stands; counted is what is thicker than
+    /// `threshold` (units of the thickness, normal to the bed).
     pub fn keep_maps(&mut self, threshold: f64) {
         let mut maps = Maps::new(&self.layout, threshold);
         for number in 0..self.grid.count() {

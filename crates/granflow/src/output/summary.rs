@@ -30,8 +30,8 @@ pub struct Summary {
     pub time: f64,
     /// Why the run ended.
     pub stop_reason: StopReason,
-    /// The last time at which a layer thicker than the threshold moved, if the run ended at rest; of a model without maps of peaks
-    /// and times when it came to rest.
+    /// The last time at which a layer thicker than the threshold moved, if the run ended at rest; of a model
+    /// without maps of peaks and times when it came to rest.
     pub stopping_time: Option<f64>,
     /// Thickness normal to the bed that a layer must exceed to count; none where there are no maps of peaks and times.
     pub threshold: Option<f64>,

@@ -19,7 +19,8 @@ pub struct About {
     pub scheme: String,
     /// Why the run ended.
     pub stop_reason: String,
-    /// Thickness that a layer must exceed to count in peaks and times (units of the thickness); none where there are no such maps.
+    /// Thickness that a layer must exceed to count in peaks and times (units of the thickness); none where
+    /// there are no such maps.
     pub threshold: Option<f64>,
 }
 

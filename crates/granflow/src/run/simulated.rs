@@ -50,7 +50,8 @@ pub trait Physics<const D: usize>: Send + Sync + 'static {
     fn film(&self) -> f64 {
         0.0
     }
-    /// Thickness that a layer must exceed to count in the maps of peaks and times (units of the thickness, normal to the bed).
+    /// Thickness that a layer must exceed to count in the maps of peaks and times (units of the thickness,
+    /// normal to the bed).
     fn threshold(&self) -> f64 {
         0.0
     }

@@ -30,7 +30,8 @@ pub struct Recording {
     pub plane: Plane,
     /// Name of the scheme.
     pub scheme: String,
-    /// Thickness that a layer must exceed to count in peaks and times (units of the thickness); none where there are no such maps.
+    /// Thickness that a layer must exceed to count in peaks and times (units of the thickness); none where
+    /// there are no such maps.
     pub threshold: Option<f64>,
     /// The instants.
     pub times: Vec<f64>,

@@ -43,11 +43,10 @@ impl<'a> Background<'a> {
         let outline = |map: &[f64], threshold: f64| {
             rings(&contour(map, Lattice::from(raster), threshold), 4.0 * raster.cell * raster.cell)
         };
-        let release = terrain.release.dense(raster.values.len());
         Background {
             extent,
             bed: &raster.values,
-            release: outline(&release, terrain.release_threshold()),
+            release: outline(&terrain.released(), terrain.release_threshold()),
             footprint: view.map("peak_thickness").map_or(Vec::new(), |map| outline(map, terrain.threshold)),
             drawn: terrain.drawn(),
             path: None,

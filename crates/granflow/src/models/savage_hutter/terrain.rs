@@ -15,8 +15,8 @@ use crate::release::Sparse;
 use std::borrow::Cow;
 use std::sync::Arc;
 
-/// The least thickness that figures draw \[m\]. Between cells they interpolate, with 0 where nothing is, so that a threshold of 0
-/// would paint the whole mountain; and no map shows a layer of less than a millimetre.
+/// The least thickness that figures draw \[m\]. Between cells they interpolate, with 0 where nothing is, so
+/// that a threshold of 0 would paint the whole mountain; and no map shows a layer of less than a millimetre.
 #[cfg(feature = "files")]
 const LEAST_DRAWN: f64 = 1e-3;
 /// The peak pressure that counts as reached, for the runout \[kPa\].
@@ -98,8 +98,7 @@ impl Domain for TerrainDomain {
             unit: "m".to_owned(),
             area: contour(map, lattice, threshold),
         };
-        let release = self.release.dense(self.raster.values.len());
-        let mut all = vec![outline("release", &release, self.release_threshold())];
+        let mut all = vec![outline("release", &self.released(), self.release_threshold())];
         for name in ["deposit", "peak_thickness"] {
             let map = maps.iter().find(|(known, _)| *known == name);
             all.extend(map.map(|(_, map)| outline(name, map, self.threshold)));
@@ -113,6 +112,15 @@ impl TerrainDomain {
     #[cfg(feature = "files")]
     pub(super) fn drawn(&self) -> f64 {
         self.threshold.max(LEAST_DRAWN)
+    }
+
+    /// The released thickness \[m\] in every cell, without a value where there is none: as in the other maps,
+    /// an outline then runs along the faces of the outermost cells, not halfway into their neighbours.
+    #[cfg(feature = "files")]
+    pub(super) fn released(&self) -> Vec<f64> {
+        let mut release = self.release.dense(self.raster.values.len());
+        release.iter_mut().filter(|h| **h <= 0.0).for_each(|h| *h = f64::NAN);
+        release
     }
 
     /// The thickness that outlines the release \[m\]: that from which a layer is drawn, less where all is thinner.

@@ -14,8 +14,8 @@ pub(super) static GEOTIFF: Format = Format::of(
     |work| Ok(write(work.run)?),
 );
 
-/// Write the maps of a run on a raster: nodata outside the elevation model, and where they have no value, since nothing thicker
-/// than the threshold came.
+/// Write the maps of a run on a raster: nodata outside the elevation model, and where they have no value,
+/// since nothing thicker than the threshold came.
 fn write(run: &Finished) -> Result<Vec<PathBuf>, RasterError> {
     let Some(bed) = run.plane.domain.raster() else { return Ok(Vec::new()) };
     let folder = run.directory.join("rasters");

@@ -86,8 +86,8 @@ impl<'a, const D: usize, B> Avalanche<'a, D, B> {
     pub fn film(self, film: f64) -> Self {
         Avalanche { film, ..self }
     }
-    /// Thickness normal to the bed that a layer must exceed to count in peaks, times and deposit \[m\]: 0.01 on terrain and 1e-3 on
-    /// a plane unless it is said. It changes nothing of what is computed.
+    /// Thickness normal to the bed that a layer must exceed to count in peaks, times and deposit \[m\]: 0.01
+    /// on terrain and 1e-3 on a plane unless it is said. It changes nothing of what is computed.
     #[must_use]
     pub fn threshold(self, threshold: f64) -> Self {
         Avalanche { threshold, ..self }

@@ -24,8 +24,8 @@ impl<S> Flowing<S> {
         let threshold = if on_terrain { terrain::THRESHOLD } else { chute::THRESHOLD };
         Flowing { name, film, threshold, on_terrain, scheme: PhantomData }
     }
-    /// The same, where a layer counts in peaks, times and deposit if it is thicker than `threshold` (units of the thickness,
-    /// normal to the bed).
+    /// The same, where a layer counts in peaks, times and deposit if it is thicker than `threshold` (units of
+    /// the thickness, normal to the bed).
     #[must_use]
     pub fn with_threshold(self, threshold: f64) -> Self {
         Flowing { threshold, ..self }
