@@ -1,4 +1,4 @@
-//! The fields of the cases in `cases/`, at every instant, bit for bit: as the first version of granflow computed them. A
+//! The fields of the cases in `cases/`, at every instant, bit for bit: as they were since no step is cut at an instant. A
 //! change that is meant to change results changes this list and says why in CHANGELOG.md.
 #![cfg(all(target_arch = "x86_64", target_os = "linux"))]
 
@@ -7,21 +7,22 @@ use granflow::run::drive;
 use granflow::sinks::Memory;
 
 /// Case, and for each of its first two fields the CRC-32 of all instants, in double precision, little endian, x fastest.
-/// From commit 05e479a; the larger tables are left out for their time.
+/// Steps are those of commit 05e479a but for the cuts: without instants between start and end both have the same last state. The
+/// larger tables are left out for their time.
 const FIELDS: [(&str, [&str; 2], [u32; 2]); 13] = [
     ("constant", FLOW, [0x856d_9764, 0x23ae_e3db]),
-    ("inclined_silo", FLOW, [0xa999_e37d, 0xc95e_03ae]),
-    ("parabola", FLOW, [0x2970_08bd, 0x56ee_5715]),
-    ("plane", FLOW, [0x97ff_1218, 0x5414_b045]),
-    ("riemann", FLOW, [0xa57a_6f6f, 0x8dd2_874e]),
-    ("silo", FLOW, [0xf320_dd54, 0x5292_1250]),
-    ("sine", FLOW, [0x7cea_04fd, 0xd784_0f15]),
-    ("sandpile_1d", PILE, [0xf303_6efd, 0xf579_71e8]),
-    ("sandpile_l", PILE, [0xed04_9031, 0x501e_df89]),
-    ("sandpile_moving", PILE, [0x70d2_463c, 0x72a1_b135]),
-    ("sandpile_source", PILE, [0xbf5c_b4a2, 0xfc11_7d28]),
-    ("sandpile_switched", PILE, [0x38e1_c077, 0x424f_448d]),
-    ("silo_hole", PILE, [0x3f88_bf96, 0x8800_e11d]),
+    ("inclined_silo", FLOW, [0xada5_489e, 0x094c_c881]),
+    ("parabola", FLOW, [0x1e3c_4e3b, 0x50b8_cd19]),
+    ("plane", FLOW, [0xa41e_0daa, 0x1d7e_10f9]),
+    ("riemann", FLOW, [0x9e35_1e6c, 0x617a_ab31]),
+    ("silo", FLOW, [0xa98e_7231, 0x9d99_e553]),
+    ("sine", FLOW, [0x467a_52d2, 0xde7f_b2e8]),
+    ("sandpile_1d", PILE, [0xa3e6_33fa, 0x9969_e555]),
+    ("sandpile_l", PILE, [0x0e5f_d9b1, 0x6cc6_454e]),
+    ("sandpile_moving", PILE, [0x3d21_10cd, 0x3342_5eca]),
+    ("sandpile_source", PILE, [0x9e39_dc98, 0x3247_6b5c]),
+    ("sandpile_switched", PILE, [0xd796_b0bc, 0xb595_7183]),
+    ("silo_hole", PILE, [0x26ef_6c23, 0x36c3_9ab7]),
 ];
 const FLOW: [&str; 2] = ["thickness", "velocity_x"];
 const PILE: [&str; 2] = ["standing_layer", "rolling_layer"];
