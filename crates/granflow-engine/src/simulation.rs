@@ -7,6 +7,7 @@ mod error;
 mod forcing;
 mod ground;
 mod instant;
+mod last_step;
 mod ledger;
 mod maps;
 mod rates;

@@ -31,10 +31,10 @@ impl<const D: usize, S: Scheme<D, f64>> Simulation<D, S> {
                 }
             }
         }
-        (self.last.begin, self.last.out, self.last.poured) = (self.time, out, dt * self.supply);
+        (self.last.begin, self.last.dt) = (self.time, dt);
+        (self.last.out, self.last.poured) = (out, dt * self.supply);
         self.time = time;
         self.step += 1;
-        self.last_dt = dt;
         self.poured.add(self.last.poured);
         for (sum, part) in self.out.iter_mut().zip(out) {
             sum.add(part);

@@ -7,38 +7,6 @@ use crate::tiles::OUTLETS;
 use granflow_model::real::CompensatedSum;
 use granflow_model::scheme::Scheme;
 
-/// The last step, for what is shown from within it.
-#[derive(Debug)]
-pub(super) struct LastStep {
-    /// Time at its begin.
-    pub begin: f64,
-    /// What left through each outlet, per cell measure, and what was poured in.
-    pub out: [f64; OUTLETS.len()],
-    pub poured: f64,
-    /// The state at its begin, where the stages wrote over it and somebody asked; a single stage leaves it in `next`.
-    pub before: Field,
-    pub kept: bool,
-    /// A step that ends at this time or later is one that somebody will look into.
-    pub asked: f64,
-    /// The instant that is shown in place of the end of the step.
-    pub shown: Option<f64>,
-}
-
-impl LastStep {
-    /// There was none.
-    pub fn none(time: f64) -> Self {
-        LastStep {
-            begin: time,
-            out: [0.0; OUTLETS.len()],
-            poured: 0.0,
-            before: Field::default(),
-            kept: false,
-            asked: f64::INFINITY,
-            shown: None,
-        }
-    }
-}
-
 impl<const D: usize, S: Scheme<D, f64>> Simulation<D, S> {
     /// Ask for the step that passes `time`, to be looked into by [`Simulation::show`]: a method of several stages then keeps the
     /// state before it.

@@ -80,11 +80,11 @@ impl<const D: usize, S: Scheme<D, f64>> Simulation<D, S> {
         }
         self.rate = self.row_max.iter().fold(0.0, |max, row| if max < row.rate { row.rate } else { max });
         if tracked > 0 {
-            let whole = self.last_dt > 0.0 && self.last_dt > 0.5 * self.wanted_step();
+            let whole = self.last.dt > 0.0 && self.last.dt > 0.5 * self.wanted_step();
             self.drift.fill(0.0);
             raise(&mut self.drift, &self.row_changes);
             for change in &mut self.drift {
-                *change = if whole { *change / self.last_dt } else { f64::INFINITY };
+                *change = if whole { *change / self.last.dt } else { f64::INFINITY };
             }
         }
     }

@@ -1,6 +1,6 @@
 //! To save a run and to take it up again.
 
-use super::instant::LastStep;
+use super::last_step::LastStep;
 use super::state::Simulation;
 use crate::field::Field;
 use crate::tiles::OUTLETS;
@@ -17,7 +17,7 @@ impl<const D: usize, S: Scheme<D, f64>> Simulation<D, S> {
         let mut numbers = vec![self.time(), self.step as f64, self.updates as f64];
         numbers.extend(out.iter().flat_map(|sum| sum.parts()));
         numbers.extend(poured.parts());
-        numbers.push(self.last_dt);
+        numbers.push(self.last.dt);
         numbers
     }
     /// The state arrays, padded, for a checkpoint.
@@ -36,8 +36,7 @@ impl<const D: usize, S: Scheme<D, f64>> Simulation<D, S> {
             }
             let end = 3 + 2 * OUTLETS.len();
             self.poured = CompensatedSum::from_parts([clock[end], clock[end + 1]]);
-            self.last_dt = clock[end + 2];
-            self.last = LastStep::none(self.time);
+            self.last = LastStep { dt: clock[end + 2], ..LastStep::none(self.time) };
             self.now = arrays;
             self.next = self.now.clone();
             self.wake_all();

@@ -1,7 +1,7 @@
 //! A run in memory: fields, clock, tiles and ledger.
 
 use super::error::{BuildError, check};
-use super::instant::LastStep;
+use super::last_step::LastStep;
 use super::step_size::StepSize;
 use super::totals::Totals;
 use crate::boundary;
@@ -75,7 +75,6 @@ pub struct Simulation<const D: usize, S: Scheme<D, f64>> {
     /// Volume per time that is poured in now, and the volume that has been poured in.
     pub(super) supply: f64,
     pub(super) poured: CompensatedSum,
-    pub(super) last_dt: f64,
     pub(super) last: LastStep,
 }
 
@@ -165,7 +164,6 @@ impl<const D: usize, S: Scheme<D, f64>> Simulation<D, S> {
             out: [CompensatedSum::default(); OUTLETS.len()],
             supply: 0.0,
             poured: CompensatedSum::default(),
-            last_dt: 0.0,
             last: LastStep::none(0.0),
             stages: scheme.stages(),
             loops,
