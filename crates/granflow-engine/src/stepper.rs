@@ -184,7 +184,10 @@ impl<const D: usize, S: Scheme<D, f64>> Stepper for Simulation<D, S> {
         Simulation::into_maps(*self)
     }
     fn bytes_per_cell(&self, maps: bool) -> usize {
-        Simulation::<D, S>::bytes_per_cell(maps)
+        // Several stages write over the state before the step, which what is shown at instants needs.
+        let before =
+            if self.scheme().stages().len() > 1 { crate::field::bytes_per_cell::<S::State>() } else { 0 };
+        Simulation::<D, S>::bytes_per_cell(maps) + before
     }
 }
 

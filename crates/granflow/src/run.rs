@@ -123,6 +123,7 @@ pub trait Run: Send + Sync {
     /// If `time` is not a number.
     fn until(&mut self, time: f64) -> Result<(), Failure> {
         assert!(!time.is_nan(), "the time to step to is not a number");
+        self.stepper_mut().show_end();
         while self.time() < time && self.step(time)?.is_finite() {}
         Ok(())
     }
@@ -135,6 +136,7 @@ pub trait Run: Send + Sync {
     /// If `limit` is not a number.
     fn to_rest(&mut self, limit: f64) -> Result<bool, Failure> {
         assert!(!limit.is_nan(), "the time to step to is not a number");
+        self.stepper_mut().show_end();
         while !self.at_rest() && self.time() < limit && self.step(limit)?.is_finite() {}
         Ok(self.at_rest())
     }

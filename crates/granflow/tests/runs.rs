@@ -248,6 +248,37 @@ fn an_instant_lies_on_the_straight_line_between_two_steps() {
     }
 }
 
+#[test]
+fn frames_within_one_step_are_those_of_the_step() {
+    for text in [PILE, SLIDE, FIXED] {
+        let (mut whole, mut run) = (start(text), start(text));
+        whole.until(0.2).unwrap();
+        run.until(0.2).unwrap();
+        let begin = (whole.time(), fields(&*whole));
+        whole.step(f64::INFINITY).unwrap();
+        let end = (whole.time(), fields(&*whole));
+        let every = (end.0 - begin.0) / 3.5;
+        let mut frames = run.frames(every);
+        while let Some(run) = frames.next().unwrap() {
+            let time = run.time();
+            if time >= end.0 {
+                break;
+            }
+            let share = (time - begin.0) / (end.0 - begin.0);
+            for ((shown, a), b) in fields(&*run).iter().zip(&begin.1).zip(&end.1) {
+                let most = 1e-14 * a.abs().max(b.abs());
+                assert!((shown - (a + share * (b - a))).abs() <= most, "at {share}: {a} {shown} {b}");
+            }
+        }
+        // What goes on goes on from the end of the step, not from what was shown last.
+        let mut memory = Memory::begin(&mut *run, Frames::Every(0.3 * every), &[]);
+        let until = run.time() + 20.0 * every;
+        let ends = Ends { steps: None, time: Some(until), until: None, kinetic_energy: None };
+        drive(&mut *run, &ends, &mut [&mut memory]).unwrap();
+        assert_eq!(run.time(), until);
+    }
+}
+
 /// The state, component by component.
 fn fields(run: &dyn Run) -> Vec<f64> {
     let stepper = run.stepper();

@@ -31,7 +31,7 @@ impl<const D: usize, S: Scheme<D, f64>> Simulation<D, S> {
                 }
             }
         }
-        (self.last.begin, self.last.dt) = (self.time, dt);
+        (self.last.begin, self.last.at, self.last.dt) = (self.time, self.time, dt);
         (self.last.out, self.last.poured) = (out, dt * self.supply);
         self.time = time;
         self.step += 1;

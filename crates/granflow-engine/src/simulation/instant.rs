@@ -16,13 +16,13 @@ impl<const D: usize, S: Scheme<D, f64>> Simulation<D, S> {
 
     /// Show the state at `time` within the last step, on the straight line between its begin and its end,
     /// U + (time - begin)/dt (U' - U), with the ledger at that time, until [`Simulation::show_end`], the next step, or another
-    /// instant, which must be later. Rates, [`Simulation::at_rest`], peaks and maps stay those of the end of the step.
+    /// instant, which must not be earlier. Rates, [`Simulation::at_rest`], peaks and maps stay those of the end of the step.
     ///
     /// # Panics
     /// If `time` is not within the last step, or before an instant that is shown, or was not asked for
     /// ([`Simulation::expect`]).
     pub fn show(&mut self, time: f64) {
-        let from = self.last.shown.unwrap_or(self.last.begin);
+        let from = self.last.at;
         self.show_end();
         if time == self.time {
             return;
@@ -32,6 +32,7 @@ impl<const D: usize, S: Scheme<D, f64>> Simulation<D, S> {
         let share = (time - from) / (self.time - from);
         let (end, before) = self.ends();
         before.approach(end, share);
+        self.last.at = time;
         self.last.shown = Some(time);
         self.swap_ends();
     }

@@ -15,6 +15,8 @@ pub(super) struct LastStep {
     /// The state at its begin, where the stages wrote over it and somebody asked; a single stage leaves it in `next`.
     pub before: Field,
     pub kept: bool,
+    /// The time of that state: an instant that is shown takes its place.
+    pub at: f64,
     /// A step that ends at this time or later is one that somebody will look into.
     pub asked: f64,
     /// The instant that is shown in place of the end of the step.
@@ -31,6 +33,7 @@ impl LastStep {
             poured: 0.0,
             before: Field::default(),
             kept: false,
+            at: time,
             asked: f64::INFINITY,
             shown: None,
         }

@@ -1,6 +1,6 @@
 //! The checkpoint: everything a run needs to go on bit for bit.
 //!
-//! Layout, all little endian: the line `granflow checkpoint 1`, a u32 length, that many bytes of JSON (version,
+//! Layout, all little endian: the line `granflow checkpoint 2`, a u32 length, that many bytes of JSON (version,
 //! case, step, names and lengths), then as raw f64 the time, the scalars and the arrays in that order, then the
 //! CRC-32 of all before.
 
@@ -11,7 +11,7 @@ use std::fs::File;
 use std::io::{self, BufReader, Read, Write};
 use std::path::Path;
 
-const MAGIC: &[u8] = b"granflow checkpoint 1\n";
+const MAGIC: &[u8] = b"granflow checkpoint 2\n";
 const VERSION: &str = env!("CARGO_PKG_VERSION");
 /// Numbers that are turned from or into bytes in one go.
 const AT_ONCE: usize = 1 << 15;

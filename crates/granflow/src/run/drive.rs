@@ -25,6 +25,7 @@ pub enum DriveError {
 /// # Errors
 /// [`DriveError`]: the sinks have seen every step before.
 pub fn drive(run: &mut dyn Run, ends: &Ends, sinks: &mut [&mut dyn Sink]) -> Result<StopReason, DriveError> {
+    run.stepper_mut().show_end();
     let last = ends.time.unwrap_or(f64::INFINITY);
     if ends.kinetic_energy.is_some() {
         run.track_energy();
@@ -54,6 +55,9 @@ fn next_instant(sinks: &[&mut dyn Sink]) -> f64 {
     sinks.iter().map(|sink| sink.next_instant()).fold(f64::INFINITY, f64::min)
 }
 
+/// An instant this share of a step before its end is that end.
+const ROUNDING: f64 = 1e-9;
+
 /// Show the sinks the instants that the last step, from time `begin` on, passed, in their order. Of one that had passed before
 /// (somebody else stepped the run) they see the end of the step.
 fn show_instants(run: &mut dyn Run, sinks: &mut [&mut dyn Sink], begin: f64) -> Result<(), SinkError> {
@@ -64,7 +68,8 @@ fn show_instants(run: &mut dyn Run, sinks: &mut [&mut dyn Sink], begin: f64) -> 
             run.stepper_mut().show_end();
             return Ok(());
         }
-        run.stepper_mut().show(if instant < begin { end } else { instant });
+        let passed = instant < begin || end - instant <= ROUNDING * (end - begin);
+        run.stepper_mut().show(if passed { end } else { instant });
         for sink in sinks.iter_mut().filter(|sink| sink.next_instant() == instant) {
             sink.at_instant(run)?;
             assert!(sink.next_instant() > instant, "a sink waits again for an instant that it was shown");
