@@ -1,4 +1,4 @@
-//! The fields of the cases in `cases/`, at every instant, bit for bit: as they were since no step is cut at an instant. A
+//! The fields of the cases in `cases/`, at every instant, bit for bit: as they are since no step is cut at an instant. A
 //! change that is meant to change results changes this list and says why in CHANGELOG.md.
 #![cfg(all(target_arch = "x86_64", target_os = "linux"))]
 
@@ -11,16 +11,16 @@ use granflow::sinks::Memory;
 /// larger tables are left out for their time.
 const FIELDS: [(&str, [&str; 2], [u32; 2]); 13] = [
     ("constant", FLOW, [0x856d_9764, 0x23ae_e3db]),
-    ("inclined_silo", FLOW, [0xada5_489e, 0x094c_c881]),
-    ("parabola", FLOW, [0x1e3c_4e3b, 0x50b8_cd19]),
+    ("inclined_silo", FLOW, [0x7d1c_451d, 0x203e_c4d5]),
+    ("parabola", FLOW, [0x18a1_d9ac, 0xa2d7_d245]),
     ("plane", FLOW, [0xa41e_0daa, 0x1d7e_10f9]),
-    ("riemann", FLOW, [0x9e35_1e6c, 0x617a_ab31]),
-    ("silo", FLOW, [0xa98e_7231, 0x9d99_e553]),
-    ("sine", FLOW, [0x467a_52d2, 0xde7f_b2e8]),
+    ("riemann", FLOW, [0xe33e_0436, 0x08c8_6780]),
+    ("silo", FLOW, [0x07b1_05a4, 0xf44d_f9c7]),
+    ("sine", FLOW, [0x4c03_8cfe, 0x1a74_6ac6]),
     ("sandpile_1d", PILE, [0xa3e6_33fa, 0x9969_e555]),
-    ("sandpile_l", PILE, [0x0e5f_d9b1, 0x6cc6_454e]),
+    ("sandpile_l", PILE, [0x180d_7584, 0xf5e6_7d50]),
     ("sandpile_moving", PILE, [0x3d21_10cd, 0x3342_5eca]),
-    ("sandpile_source", PILE, [0x9e39_dc98, 0x3247_6b5c]),
+    ("sandpile_source", PILE, [0x4553_31d8, 0xaba1_8ffd]),
     ("sandpile_switched", PILE, [0xd796_b0bc, 0xb595_7183]),
     ("silo_hole", PILE, [0x26ef_6c23, 0x36c3_9ab7]),
 ];
