@@ -55,21 +55,22 @@ fn next_instant(sinks: &[&mut dyn Sink]) -> f64 {
     sinks.iter().map(|sink| sink.next_instant()).fold(f64::INFINITY, f64::min)
 }
 
-/// An instant this share of a step before its end is that end.
+/// An instant this share of a step before or after its end is that end: times of steps are sums.
 const ROUNDING: f64 = 1e-9;
 
 /// Show the sinks the instants that the last step, from time `begin` on, passed, in their order. Of one that had passed before
 /// (somebody else stepped the run) they see the end of the step.
 fn show_instants(run: &mut dyn Run, sinks: &mut [&mut dyn Sink], begin: f64) -> Result<(), SinkError> {
     let end = run.time();
+    let near = ROUNDING * (end - begin);
     loop {
         let instant = next_instant(sinks);
-        if instant > end {
+        if instant > end + near {
             run.stepper_mut().show_end();
             return Ok(());
         }
-        let passed = instant < begin || end - instant <= ROUNDING * (end - begin);
-        run.stepper_mut().show(if passed { end } else { instant });
+        let at_end = instant < begin || end - instant <= near;
+        run.stepper_mut().show(if at_end { end } else { instant });
         for sink in sinks.iter_mut().filter(|sink| sink.next_instant() == instant) {
             sink.at_instant(run)?;
             assert!(sink.next_instant() > instant, "a sink waits again for an instant that it was shown");
