@@ -32,22 +32,20 @@ impl<const D: usize, S: Scheme<D, f64>> Simulation<D, S> {
         let share = (time - from) / (self.time - from);
         let (end, before) = self.ends();
         before.approach(end, share);
-        self.last.at = time;
-        self.last.shown = Some(time);
+        (self.last.at, self.last.shown) = (time, true);
         self.swap_ends();
     }
 
     /// Show the end of the last step again.
     pub fn show_end(&mut self) {
-        if self.last.shown.is_some() {
+        if std::mem::take(&mut self.last.shown) {
             self.swap_ends();
-            self.last.shown = None;
         }
     }
 
     /// Is an instant within the last step shown?
     pub fn is_shown(&self) -> bool {
-        self.last.shown.is_some()
+        self.last.shown
     }
 
     /// The state, and the one at the begin of the last step.
@@ -75,20 +73,15 @@ impl<const D: usize, S: Scheme<D, f64>> Simulation<D, S> {
 
     /// The ledger at what is shown: what has left through each outlet, per cell measure, and what has been poured in.
     pub(super) fn ledger(&self) -> ([CompensatedSum; OUTLETS.len()], CompensatedSum) {
-        let hidden = self.hidden_share();
         let (mut out, mut poured) = (self.out, self.poured);
-        if hidden > 0.0 {
+        if self.is_shown() {
+            // The share of the step that lies behind the instant.
+            let hidden = (self.time - self.last.at) / (self.time - self.last.begin);
             for (sum, part) in out.iter_mut().zip(self.last.out) {
                 sum.add(-hidden * part);
             }
             poured.add(-hidden * self.last.poured);
         }
         (out, poured)
-    }
-
-    /// The share of the last step that lies behind what is shown.
-    fn hidden_share(&self) -> f64 {
-        let shown = |time: f64| (self.time - time) / (self.time - self.last.begin);
-        self.last.shown.map_or(0.0, shown)
     }
 }

@@ -15,12 +15,12 @@ pub(super) struct LastStep {
     /// The state at its begin, where the stages wrote over it and somebody asked; a single stage leaves it in `next`.
     pub before: Field,
     pub kept: bool,
-    /// The time of that state: an instant that is shown takes its place.
+    /// The time of that state, and of the last instant that was shown, which takes its place.
     pub at: f64,
     /// A step that ends at this time or later is one that somebody will look into.
     pub asked: f64,
-    /// The instant that is shown in place of the end of the step.
-    pub shown: Option<f64>,
+    /// That instant is shown in place of the end of the step.
+    pub shown: bool,
 }
 
 impl LastStep {
@@ -35,7 +35,7 @@ impl LastStep {
             kept: false,
             at: time,
             asked: f64::INFINITY,
-            shown: None,
+            shown: false,
         }
     }
 }

@@ -213,7 +213,7 @@ impl<const D: usize, S: Scheme<D, f64>> Simulation<D, S> {
     }
     /// Time reached, or shown ([`Simulation::show`]).
     pub fn time(&self) -> f64 {
-        self.last.shown.unwrap_or(self.time)
+        if self.is_shown() { self.last.at } else { self.time }
     }
     /// Steps done.
     pub fn step(&self) -> u64 {

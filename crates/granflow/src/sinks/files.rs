@@ -165,11 +165,11 @@ impl Files {
         self.line(run)
     }
 
-    /// A frame that was due, and when the next one is.
+    /// A frame that was due, when the next one is, and the series joined if that is worth it.
     fn frame_due(&mut self, run: &mut dyn Run) -> Result<(), output::Error> {
         self.frame(run)?;
         self.schedule.plan(run);
-        Ok(())
+        self.join(run)
     }
 
     /// Have the series so far joined into `result.nc`, if that is worth its cost again.
@@ -194,7 +194,6 @@ impl Files {
             Due::Line => self.line(run)?,
             Due::Nothing => {}
         }
-        self.join(run)?;
         if self.saved.elapsed().as_secs_f64() > CHECKPOINT {
             self.checkpoint(run, self.written)?;
         }

@@ -107,11 +107,7 @@ impl Sink for Memory {
         Ok(())
     }
     fn after_step(&mut self, run: &mut dyn Run) -> Result<(), SinkError> {
-        if self.schedule.due(run) == Due::Frame {
-            self.frame(run);
-            self.schedule.plan(run);
-        }
-        Ok(())
+        if self.schedule.due(run) == Due::Frame { self.at_instant(run) } else { Ok(()) }
     }
 }
 
