@@ -18,7 +18,7 @@
 //!     "silo.toml",
 //! )?;
 //! let checked = case.check(&NoFiles)?;
-//! assert_eq!(checked.run.scheme, "balanced");
+//! assert_eq!(checked.run.scheme, "energy_stable");
 //! let Kind::Chute(chute) = checked.kind else { unreachable!("it has a grid") };
 //! assert_eq!(chute.initial.thickness[120], 2.3);
 //! # Ok::<(), granflow_case::CaseError>(())

@@ -29,7 +29,7 @@ Examples:
   granflow new silo                      writes silo.toml, commented
   granflow check silo.toml               what would be computed, and how large it is
   granflow run silo.toml                 writes silo/result.nc, silo/summary.json, silo/figures/
-  granflow run silo.toml --set scheme.name=balanced --set time.until=rest --out rest
+  granflow run silo.toml --set scheme.name=energy_stable --set time.until=rest --out rest
 
 Exit status: 0 done; 2 bad usage or bad case; 3 the computation failed; 4 a file could not be read or written;
 130 interrupted.";

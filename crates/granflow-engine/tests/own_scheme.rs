@@ -7,7 +7,7 @@ use granflow_engine::kernel;
 use granflow_engine::simulation::{SimdLevel, Simulation, StepSize};
 use granflow_model::real::{Real, for_axis, per_axis};
 use granflow_model::scheme::{
-    Boundary, Cell, Diagnostics, Faces, Scheme, SchemeVisitor, Side, Spacing, Stencil, components,
+    Boundary, Cell, Diagnostics, Faces, Forecasts, Scheme, SchemeVisitor, Side, Spacing, Stencil, components,
 };
 use granflow_model::time::{EULER, Stages};
 
@@ -63,6 +63,7 @@ impl<const D: usize, R: Real> Scheme<D, R> for Upwind {
     type Ground = Wind<D, R>;
     type Forcing = ();
     type Primitives = ();
+    type Forecast = ();
     type FaceStates = Carried<D, R>;
     type Flux = Mixture<R>;
     type Corner = ();
@@ -80,12 +81,20 @@ impl<const D: usize, R: Real> Scheme<D, R> for Upwind {
     #[inline(always)]
     fn primitives(&self, _here: &Cell<Mixture<R>, Wind<D, R>>) {}
     #[inline(always)]
-    fn reconstruct(&self, stencil: &impl Stencil<D, R, Mixture<R>, Wind<D, R>>, _: &()) -> Carried<D, R> {
+    fn forecast(&self, _stencil: &impl Stencil<D, R, Mixture<R>, Wind<D, R>>, _dt: R) {}
+    #[inline(always)]
+    fn reconstruct(
+        &self,
+        stencil: &impl Stencil<D, R, Mixture<R>, Wind<D, R>>,
+        _: &(),
+        _forecasts: &Forecasts<D, ()>,
+        _dt: R,
+    ) -> Carried<D, R> {
         let Cell { state, ground, .. } = stencil.at([0; D]);
         Carried { state, speed: ground.speed }
     }
     #[inline(always)]
-    fn flux(&self, axis: usize, left: &Carried<D, R>, right: &Carried<D, R>) -> Mixture<R> {
+    fn flux(&self, axis: usize, left: &Carried<D, R>, right: &Carried<D, R>, _lambda: R) -> Mixture<R> {
         let speed = (left.speed[axis] + right.speed[axis]) * R::splat(0.5);
         let (up, down) = (speed.positive_part(), -(-speed).positive_part());
         left.state.combine(
@@ -157,8 +166,8 @@ impl<const D: usize, R: Real> Scheme<D, R> for Upwind {
         R::splat(1.0).lt(R::zero())
     }
     #[inline(always)]
-    fn outflow(&self, flux: &Mixture<R>, _side: Side) -> R {
-        flux.volume
+    fn outflow(&self, flux: &Mixture<R>, _side: Side, lambda: R) -> R {
+        lambda * flux.volume
     }
     fn yield_ratio(&self, _stencil: &impl Stencil<D, R, Mixture<R>, Wind<D, R>>) -> R {
         R::zero()

@@ -4,6 +4,7 @@
 //! [`ground::Terrain`]). The unknowns are [`Flow`]; what is fixed in a cell is a [`ground::Bed`].
 
 pub mod balanced;
+pub mod energy_stable;
 #[cfg(feature = "std")]
 pub mod exact;
 

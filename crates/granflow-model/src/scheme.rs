@@ -162,7 +162,18 @@ pub trait Stencil<const D: usize, R: Real, S: Copy, G: Copy, F: Copy = ()> {
     }
 }
 
-/// How far along each axis [`Scheme::reconstruct`] sees.
+/// What was forecast of a cell and of its neighbours along each axis.
+#[derive(Clone, Copy, Debug)]
+pub struct Forecasts<const D: usize, P> {
+    /// Of the cell itself.
+    pub here: P,
+    /// Of the neighbour towards smaller coordinates, per axis.
+    pub lo: [P; D],
+    /// Of the neighbour towards larger coordinates, per axis.
+    pub hi: [P; D],
+}
+
+/// How far along each axis [`Scheme::reconstruct`] sees, and with what it sees of the forecasts' neighbours.
 pub const REACH: usize = 2;
 
 /// What passes a cell's two faces of one axis.
@@ -197,7 +208,7 @@ pub enum Boundary {
 }
 
 /// A finite-volume scheme: U -> E_dt(U), written for one cell, one face and one corner.
-/// `reconstruct` sees a cell and its neighbours, `flux` the face states of two cells, `corner` those of the cells around a
+/// `forecast` sees a cell and its neighbours, `reconstruct` these and their forecasts, `flux` the face states of two cells, `corner` those of the cells around a
 /// corner, `update` a cell with what its faces and corners found. A Runge-Kutta method is a convex combination of such
 /// maps ([`crate::time`]).
 pub trait Scheme<const D: usize, R: Real>: Copy + Send + Sync {
@@ -209,6 +220,8 @@ pub trait Scheme<const D: usize, R: Real>: Copy + Send + Sync {
     type Forcing: Components<R>;
     /// What follows from a cell alone.
     type Primitives: Copy;
+    /// What neighbours must know of a cell beside its state before any of them offers something; `()` where a scheme needs none.
+    type Forecast: Components<R>;
     /// What a cell offers to its faces and remembers for its update.
     type FaceStates: Components<R>;
     /// What passes a face, seen from both sides.
@@ -237,14 +250,22 @@ pub trait Scheme<const D: usize, R: Real>: Copy + Send + Sync {
 
     /// What follows from a cell alone: the place for divisions and roots, which are computed ahead of what waits for them.
     fn primitives(&self, here: &Cell<Self::State, Self::Ground, Self::Forcing>) -> Self::Primitives;
-    /// What the cell in the middle of the stencil offers to its faces and corners.
+    /// What neighbours must know of the cell in the middle of the stencil in a step of `dt`; it sees the next cells along each axis.
+    fn forecast(
+        &self,
+        stencil: &impl Stencil<D, R, Self::State, Self::Ground, Self::Forcing>,
+        dt: R,
+    ) -> Self::Forecast;
+    /// What the cell in the middle of the stencil offers to its faces and corners in a step of `dt`.
     fn reconstruct(
         &self,
         stencil: &impl Stencil<D, R, Self::State, Self::Ground, Self::Forcing>,
         primitives: &Self::Primitives,
+        forecasts: &Forecasts<D, Self::Forecast>,
+        dt: R,
     ) -> Self::FaceStates;
-    /// What passes the face between `left` and `right` along `axis`.
-    fn flux(&self, axis: usize, left: &Self::FaceStates, right: &Self::FaceStates) -> Self::Flux;
+    /// What passes the face between `left` and `right` along `axis`; `lambda` is dt/dx along it.
+    fn flux(&self, axis: usize, left: &Self::FaceStates, right: &Self::FaceStates, lambda: R) -> Self::Flux;
     /// What is found at a corner: `around[y][x]` are the cells below and above it, left and right of it; in one dimension
     /// the corner is the face, and both rows are the same.
     fn corner(&self, around: [[&Self::FaceStates; 2]; 2]) -> Self::Corner;
@@ -286,8 +307,8 @@ pub trait Scheme<const D: usize, R: Real>: Copy + Send + Sync {
     fn source_rate(&self, _forcing: &Self::Forcing) -> R {
         R::zero()
     }
-    /// Volume per time and face length that leaves the cell on `side` towards the other side.
-    fn outflow(&self, flux: &Self::Flux, side: Side) -> R;
+    /// Volume per cell area that leaves the cell on `side` towards the other side in a step, dt/dx along the axis being `lambda`.
+    fn outflow(&self, flux: &Self::Flux, side: Side, lambda: R) -> R;
     /// Pull of the mass if it were at rest, as a share of the static bound: up to 1 it stays; 0 where dry and where
     /// nothing holds.
     fn yield_ratio(&self, stencil: &impl Stencil<D, R, Self::State, Self::Ground, Self::Forcing>) -> R;

@@ -9,7 +9,15 @@ use std::path::Path;
 use std::process::{Command, ExitCode};
 
 /// What is counted.
-const COUNTED: [&str; 5] = ["balanced", "balanced_terrain", "verfahren_5", "balanced_2", "first_order"];
+const COUNTED: [&str; 7] = [
+    "energy_stable",
+    "energy_stable_terrain",
+    "balanced",
+    "balanced_terrain",
+    "verfahren_5",
+    "balanced_2",
+    "first_order",
+];
 /// Cells along each axis: whole tiles, as most tiles of a large grid are.
 const CELLS: usize = 120;
 /// Steps of the shorter run; the longer has twice as many, and their difference knows nothing of the start.

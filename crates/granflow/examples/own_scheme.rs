@@ -5,7 +5,9 @@
 
 use granflow::grid::Grid;
 use granflow::real::{Real, per_axis, total};
-use granflow::scheme::{Boundary, Cell, Diagnostics, Faces, Scheme, SchemeVisitor, Side, Spacing, Stencil};
+use granflow::scheme::{
+    Boundary, Cell, Diagnostics, Faces, Forecasts, Scheme, SchemeVisitor, Side, Spacing, Stencil,
+};
 use granflow::simulation::{Simulation, StepSize};
 use granflow::time::{EULER, Stages};
 
@@ -20,6 +22,7 @@ impl<const D: usize, R: Real> Scheme<D, R> for Upwind {
     type Ground = ();
     type Forcing = ();
     type Primitives = ();
+    type Forecast = ();
     type FaceStates = R;
     type Flux = R;
     type Corner = ();
@@ -36,12 +39,20 @@ impl<const D: usize, R: Real> Scheme<D, R> for Upwind {
     #[inline(always)]
     fn primitives(&self, _here: &Cell<R, ()>) {}
     #[inline(always)]
-    fn reconstruct(&self, stencil: &impl Stencil<D, R, R, ()>, _primitives: &()) -> R {
+    fn forecast(&self, _stencil: &impl Stencil<D, R, R, ()>, _dt: R) {}
+    #[inline(always)]
+    fn reconstruct(
+        &self,
+        stencil: &impl Stencil<D, R, R, ()>,
+        _primitives: &(),
+        _forecasts: &Forecasts<D, ()>,
+        _dt: R,
+    ) -> R {
         stencil.at([0; D]).state
     }
     /// a+ u_left + a- u_right
     #[inline(always)]
-    fn flux(&self, _axis: usize, left: &R, right: &R) -> R {
+    fn flux(&self, _axis: usize, left: &R, right: &R, _lambda: R) -> R {
         R::splat(self.a.max(0.0)) * *left + R::splat(self.a.min(0.0)) * *right
     }
     #[inline(always)]
@@ -81,8 +92,8 @@ impl<const D: usize, R: Real> Scheme<D, R> for Upwind {
         R::zero().lt(R::zero())
     }
     #[inline(always)]
-    fn outflow(&self, flux: &R, _side: Side) -> R {
-        *flux
+    fn outflow(&self, flux: &R, _side: Side, lambda: R) -> R {
+        lambda * *flux
     }
     fn yield_ratio(&self, _stencil: &impl Stencil<D, R, R, ()>) -> R {
         R::zero()

@@ -11,7 +11,9 @@ use granflow::model::{Domain, Model, Plane, Quantity, Units, Words};
 use granflow::real::{Real, dot, per_axis, total};
 use granflow::run::{CellOf, Ends, Field, Physics, Run, Simulated, Value, drive};
 use granflow::savage_hutter::exact::Riemann;
-use granflow::scheme::{Cell, Diagnostics, Faces, Scheme, SchemeVisitor, Side, Spacing, Stencil, components};
+use granflow::scheme::{
+    Cell, Diagnostics, Faces, Forecasts, Scheme, SchemeVisitor, Side, Spacing, Stencil, components,
+};
 use granflow::sinks::Memory;
 use granflow::time::{EULER, Stages};
 use std::sync::Arc;
@@ -82,6 +84,7 @@ impl<const D: usize, R: Real> Scheme<D, R> for SaintVenant {
     type State = Water<D, R>;
     type Ground = Bed<R>;
     type Primitives = [R; D];
+    type Forecast = ();
     type FaceStates = Offer<D, R>;
     type Flux = Passing<D, R>;
     type Forcing = ();
@@ -101,12 +104,20 @@ impl<const D: usize, R: Real> Scheme<D, R> for SaintVenant {
         here.state.velocity()
     }
     #[inline(always)]
-    fn reconstruct(&self, stencil: &impl Stencil<D, R, Water<D, R>, Bed<R>>, u: &[R; D]) -> Offer<D, R> {
+    fn forecast(&self, _stencil: &impl Stencil<D, R, Water<D, R>, Bed<R>>, _dt: R) {}
+    #[inline(always)]
+    fn reconstruct(
+        &self,
+        stencil: &impl Stencil<D, R, Water<D, R>, Bed<R>>,
+        u: &[R; D],
+        _forecasts: &Forecasts<D, ()>,
+        _dt: R,
+    ) -> Offer<D, R> {
         let Cell { state, ground, .. } = stencil.at([0; D]);
         Offer { h: state.h, u: *u, z: ground.z }
     }
     #[inline(always)]
-    fn flux(&self, axis: usize, left: &Offer<D, R>, right: &Offer<D, R>) -> Passing<D, R> {
+    fn flux(&self, axis: usize, left: &Offer<D, R>, right: &Offer<D, R>, _lambda: R) -> Passing<D, R> {
         let (g, half) = (R::splat(G), R::splat(0.5));
         let sill = left.z.max(right.z);
         let (a, b) = ((left.h + left.z - sill).positive_part(), (right.h + right.z - sill).positive_part());
@@ -186,8 +197,8 @@ impl<const D: usize, R: Real> Scheme<D, R> for SaintVenant {
         R::zero().lt(R::zero())
     }
     #[inline(always)]
-    fn outflow(&self, flux: &Passing<D, R>, _side: Side) -> R {
-        flux.mass
+    fn outflow(&self, flux: &Passing<D, R>, _side: Side, lambda: R) -> R {
+        lambda * flux.mass
     }
     fn yield_ratio(&self, _stencil: &impl Stencil<D, R, Water<D, R>, Bed<R>>) -> R {
         R::zero()

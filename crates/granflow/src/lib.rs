@@ -20,7 +20,7 @@
 //! ```
 //! use granflow::build::{Avalanche, Grid};
 //! let column = |[x]: [f64; 1]| if x.abs() < 1.0 { 1.0 } else { 0.0 };
-//! let mut run = Avalanche::on_plane(Grid::line([-6.0, 6.0], 240), 0.0).mu(0.32).thickness(column).start()?;
+//! let mut run = Avalanche::on_plane(Grid::line([-8.0, 8.0], 320), 0.0).mu(0.32).thickness(column).start()?;
 //! let before = run.totals().volume;
 //! assert!(run.to_rest(100.0)?);
 //! assert_eq!(run.stepper().speed(), 0.0); // not small: zero

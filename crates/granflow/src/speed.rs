@@ -135,13 +135,14 @@ mod tests {
 
     #[test]
     fn every_cell_moves_until_the_restart_and_the_restart_is_the_start() {
-        all_move_and_begin_anew(avalanches::on_plane::<2>(false, whole(40)));
-        all_move_and_begin_anew(avalanches::on_terrain(false, whole(40)));
+        all_move_and_begin_anew(avalanches::on_plane::<2, _>(avalanches::balanced(false), whole(40)));
+        all_move_and_begin_anew(avalanches::on_terrain(avalanches::balanced(false), whole(40)));
     }
 
     #[test]
     fn what_is_dry_sleeps() {
-        let mut load = avalanches::on_plane::<2>(false, Extent { cells: 400, wet: 0.25 });
+        let mut load =
+            avalanches::on_plane::<2, _>(avalanches::balanced(false), Extent { cells: 400, wet: 0.25 });
         load.restart().unwrap();
         assert_eq!(
             load.run.totals().wet,

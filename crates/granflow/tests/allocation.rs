@@ -1,6 +1,8 @@
 //! A step asks for no memory once the first one is done.
 
 mod support;
+#[path = "support/energy_stable.rs"]
+mod tried;
 
 use granflow::savage_hutter::Flow;
 use granflow::scheme::Boundary;

@@ -8,12 +8,12 @@ use granflow::sinks::Memory;
 
 /// Case, and for each of its first two fields the CRC-32 of all instants, in double precision, little endian, x fastest.
 /// Steps are those of commit 05e479a but for the cuts: without instants between start and end both have the same last state. The
-/// larger tables are left out for their time.
+/// larger tables are left out for their time. `plane` was recorded again when `energy_stable` became its scheme.
 const FIELDS: [(&str, [&str; 2], [u32; 2]); 13] = [
     ("constant", FLOW, [0x856d_9764, 0x23ae_e3db]),
     ("inclined_silo", FLOW, [0xa3a3_c359, 0x3f56_0b55]),
     ("parabola", FLOW, [0x2970_08bd, 0x56ee_5715]),
-    ("plane", FLOW, [0xa41e_0daa, 0x1d7e_10f9]),
+    ("plane", FLOW, [0x9ec9_e395, 0x5463_988b]),
     ("riemann", FLOW, [0xa57a_6f6f, 0x8dd2_874e]),
     ("silo", FLOW, [0xf320_dd54, 0x436e_fb0c]),
     ("sine", FLOW, [0x7cea_04fd, 0xd784_0f15]),

@@ -1,6 +1,8 @@
 //! Lanes change what a step costs, not one bit of what it gives.
 
 mod support;
+#[path = "support/balanced.rs"]
+mod tried;
 
 use granflow::grid::Grid;
 use granflow::hadeler_kuttler::scheme::{ADAPTIVE, FIRST_ORDER, HadelerKuttler, SECOND_ORDER, Slopes};
@@ -8,6 +10,7 @@ use granflow::hadeler_kuttler::{Ground, Pile, Source};
 use granflow::kernels::Kernel;
 use granflow::savage_hutter::Flow;
 use granflow::savage_hutter::balanced::Balanced;
+use granflow::savage_hutter::energy_stable::EnergyStable;
 use granflow::savage_hutter::friction::{Coulomb, Law, SamosAt, Voellmy};
 use granflow::savage_hutter::kinetic::{VERFAHREN_1, VERFAHREN_2, VERFAHREN_3, VERFAHREN_4, VERFAHREN_5};
 use granflow::scheme::{Boundary, Components};
@@ -94,6 +97,17 @@ fn on_planes<const D: usize>(cells: [usize; D], ends: Boundary) {
     };
     let friction = Coulomb { mu: 0.3 };
     compare("balanced", || run(Balanced::first(Law::Coulomb(friction), 1e-6), StepSize::Courant(0.9)));
+    compare("energy_stable", || {
+        let scheme = EnergyStable::new(Law::Coulomb(friction), 1e-6);
+        Simulation::new(
+            scheme,
+            sheet,
+            StepSize::Courant(0.9),
+            |_| plane::<D>(tilt, 0.4),
+            rough(3, cells, true),
+        )
+        .unwrap()
+    });
     compare("balanced_2", || run(Balanced::second(Law::Coulomb(friction), 1e-6), StepSize::Courant(0.45)));
     let published = [VERFAHREN_1, VERFAHREN_2, VERFAHREN_3, VERFAHREN_4, VERFAHREN_5];
     for (number, scheme) in published.into_iter().enumerate() {
@@ -150,6 +164,10 @@ fn on_terrain(name: &str, friction: Law) {
             Simulation::new(scheme, sheet, step, |index| grounds[number(index)], begin).unwrap()
         });
     }
+    compare(name, || {
+        let scheme = EnergyStable::new(friction, 1e-6);
+        Simulation::new(scheme, sheet, StepSize::Courant(0.9), |index| grounds[number(index)], begin).unwrap()
+    });
 }
 
 #[test]

@@ -3,6 +3,8 @@
 
 mod oracle;
 mod support;
+#[path = "support/balanced.rs"]
+mod tried;
 
 use granflow::savage_hutter::Flow;
 use granflow::savage_hutter::exact::Riemann;

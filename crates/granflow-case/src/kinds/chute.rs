@@ -19,6 +19,9 @@ mod slope;
 
 use slope::{Columns, Slope};
 
+/// The film of a case that says none, in the unit of the depth.
+pub const FILM: f64 = 1e-6;
+
 /// The threshold on a chute where nobody says another one, in the unit of the thickness, which the papers
 /// scale to order 1.
 pub const THRESHOLD: f64 = 1e-3;
@@ -186,7 +189,7 @@ impl Written for Words {
             epsilon: self.material.epsilon.unwrap_or(1.0),
             eta: self.material.eta.unwrap_or(1.0),
             material,
-            scheme: scheme.method(scheme.name),
+            scheme: scheme.method(scheme.name, FILM),
             initial,
         });
         Ok((run, kind))
@@ -201,7 +204,7 @@ impl Words {
         }
         let name = self.scheme.name.as_str();
         let refuse = |key: &str, what: &str| {
-            let cure = "use the scheme balanced or balanced_2, which can";
+            let cure = "use the scheme energy_stable, which can";
             Err(look.fault(key, format!("{name} {what}"), cure))
         };
         let friction = &self.material.friction;

@@ -21,6 +21,9 @@ use words::Elevation;
 
 pub use release::{Attribute, Cap, Extent, Measured, Release, Thickness};
 
+/// The film of a case that says none \[m\]: a layer of a tenth of a millimetre, thinner than a grain, does not flow.
+pub const FILM: f64 = 1e-4;
+
 /// The threshold on a mountain where nobody says another one \[m\].
 pub const THRESHOLD: f64 = 0.01;
 
@@ -40,16 +43,18 @@ pub struct Plan {
     /// What flows, and what holds it back.
     pub material: Material,
     /// The scheme.
-    pub scheme: Method<Order>,
+    pub scheme: Method<TerrainScheme>,
 }
 
-/// Order of the balanced scheme in space and time.
+/// The schemes that work on terrain.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Order {
-    /// The scheme balanced.
-    First,
-    /// The scheme balanced_2.
-    Second,
+pub enum TerrainScheme {
+    /// energy_stable.
+    EnergyStable,
+    /// balanced.
+    Balanced,
+    /// balanced_2.
+    Balanced2,
 }
 
 /// An avalanche on a mountain.
@@ -119,7 +124,7 @@ impl Written for Words {
         }
         let material = material.check(look)?;
         let stepping = scheme.check(look)?;
-        let order = order(look, scheme.name)?;
+        let order = on_terrain(look, scheme.name)?;
         let ends = time.check(look, scheme.name)?;
         let written = output.check(look, &ends, &WRITTEN)?;
         let curvature = terrain.check(look)?;
@@ -139,7 +144,7 @@ impl Written for Words {
             curvature,
             releases,
             material,
-            scheme: scheme.method(order),
+            scheme: scheme.method(order, FILM),
         });
         Ok((run, kind))
     }
@@ -165,11 +170,12 @@ impl OnTerrain {
     }
 }
 
-/// Only the balanced schemes work on terrain.
-fn order(look: &Look, scheme: SchemeName) -> Result<Order, CaseError> {
+/// The published schemes work on a constant slope.
+fn on_terrain(look: &Look, scheme: SchemeName) -> Result<TerrainScheme, CaseError> {
     match scheme {
-        SchemeName::Balanced => Ok(Order::First),
-        SchemeName::Balanced2 => Ok(Order::Second),
+        SchemeName::EnergyStable => Ok(TerrainScheme::EnergyStable),
+        SchemeName::Balanced => Ok(TerrainScheme::Balanced),
+        SchemeName::Balanced2 => Ok(TerrainScheme::Balanced2),
         SchemeName::Verfahren1
         | SchemeName::Verfahren2
         | SchemeName::Verfahren3
@@ -177,7 +183,7 @@ fn order(look: &Look, scheme: SchemeName) -> Result<Order, CaseError> {
         | SchemeName::Verfahren5 => Err(look.fault(
             "scheme.name",
             format!("{} works on a [grid] only, not on terrain", scheme.as_str()),
-            "use the scheme balanced or balanced_2, which can",
+            "use the scheme energy_stable, which can",
         )),
     }
 }

@@ -481,7 +481,11 @@ fn an_avalanche_has_no_table() {
         assert!(error.to_string().contains("belongs to the model hadeler_kuttler"), "{error}");
         assert!(error.to_string().contains("model = \"hadeler_kuttler\""), "{error}");
     }
-    assert!(silo("scheme.name=adaptive").to_string().contains("allowed: balanced, balanced_2, verfahren_1"));
+    assert!(
+        silo("scheme.name=adaptive")
+            .to_string()
+            .contains("allowed: energy_stable, balanced, balanced_2, verfahren_1")
+    );
     assert!(silo("time.until=steady").to_string().contains("write until = \"rest\""));
     assert!(silo("initial={}").to_string().contains("`thickness` is missing"));
 }

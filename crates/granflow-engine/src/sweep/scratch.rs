@@ -90,7 +90,7 @@ impl<L: SimdVector, P: Components<L>> Row<'_, L, P> {
     /// The values of the cells from `at` on.
     ///
     /// # Safety
-    /// `at` is -1 or a cell of the strip, or a vector reaches less than its width behind the end.
+    /// `at` is -1 or a cell of the strip, or a vector reaches at most its width behind the end.
     #[inline(always)]
     pub(super) unsafe fn get(&self, at: isize) -> P {
         const { assert!(L::WIDTH <= MAX_LANES) };
@@ -108,16 +108,16 @@ impl<L: SimdVector, P: Components<L>> Row<'_, L, P> {
     /// Put values.
     ///
     /// # Safety
-    /// `at` is a cell of the strip, or a vector reaches less than its width behind the end.
+    /// As for [`Row::get`].
     #[inline(always)]
-    pub(super) unsafe fn put(&mut self, at: usize, value: P) {
-        debug_assert!(at + L::WIDTH <= STRIP + PADDING);
+    pub(super) unsafe fn put(&mut self, at: isize, value: P) {
+        debug_assert!(at >= -1 && at + L::WIDTH as isize <= (STRIP + PADDING) as isize);
         value.store(
             #[inline(always)]
             |k, part| {
                 assert!(k < P::COUNT);
                 // SAFETY: inside the row.
-                unsafe { part.store(self.start.add(k * ROW + PADDING + at)) };
+                unsafe { part.store(self.start.add(k * ROW + (PADDING as isize + at) as usize)) };
             },
         );
     }
@@ -138,6 +138,8 @@ impl<L: SimdVector, P: Components<L>> Row<'_, L, P> {
 
 /// The rows of a strip.
 pub(super) struct Scratch<'a, const D: usize, L: SimdVector, T: Scheme<D, L>> {
+    /// Three rows of forecasts: of the row whose face states are found, and of the ones below and above.
+    pub forecasts: [Row<'a, L, T::Forecast>; 3],
     /// Two rows of face states: of the row that is updated and the one above.
     pub face_states: [Row<'a, L, T::FaceStates>; 2],
     /// Through the lower faces along x of a row.
@@ -154,7 +156,8 @@ pub(super) struct Scratch<'a, const D: usize, L: SimdVector, T: Scheme<D, L>> {
 
 impl<'a, const D: usize, L: SimdVector, T: Scheme<D, L>> Scratch<'a, D, L, T> {
     /// How many numbers its rows have.
-    const NUMBERS: usize = 2 * Row::<L, T::FaceStates>::NUMBERS
+    const NUMBERS: usize = 3 * Row::<L, T::Forecast>::NUMBERS
+        + 2 * Row::<L, T::FaceStates>::NUMBERS
         + 2 * Row::<L, T::Flux>::NUMBERS
         + 2 * Row::<L, T::Corner>::NUMBERS
         + Row::<L, T::State>::NUMBERS;
@@ -163,15 +166,18 @@ impl<'a, const D: usize, L: SimdVector, T: Scheme<D, L>> Scratch<'a, D, L, T> {
     /// The [`Scratch::NUMBERS`] numbers behind `start` are borrowed for 'a.
     #[inline(always)]
     unsafe fn at(start: *mut f64, in_strip: &'a mut [u16; STRIP]) -> Self {
+        let forecasts = Row::<L, T::Forecast>::NUMBERS;
         let states = Row::<L, T::FaceStates>::NUMBERS;
         let fluxes = Row::<L, T::Flux>::NUMBERS;
         let corners = Row::<L, T::Corner>::NUMBERS;
         // SAFETY: one row begins where the one before ends.
         unsafe {
-            let across = start.add(2 * states);
+            let state = start.add(3 * forecasts);
+            let across = state.add(2 * states);
             let corner = across.add(2 * fluxes);
             Scratch {
-                face_states: [Row::at(start), Row::at(start.add(states))],
+                forecasts: [Row::at(start), Row::at(start.add(forecasts)), Row::at(start.add(2 * forecasts))],
+                face_states: [Row::at(state), Row::at(state.add(states))],
                 across: Row::at(across),
                 below: Row::at(across.add(fluxes)),
                 corners: [Row::at(corner), Row::at(corner.add(corners))],

@@ -158,6 +158,11 @@ impl<'a, const D: usize, const UNIFORM: bool, L: SimdVector, T: Scheme<D, L>> St
         }
     }
 
+    /// dt/dx along an axis.
+    #[inline(always)]
+    fn lambda(&self, axis: usize) -> L {
+        self.dt * self.spacing.inv[axis]
+    }
     /// The cells from `place` on.
     #[inline(always)]
     fn cell(&self, place: usize) -> Cell<T::State, T::Ground, T::Forcing> {

@@ -5,5 +5,5 @@ mod chute;
 mod terrain;
 
 pub use bed::{Bed, Towards};
-pub use chute::Chute;
+pub use chute::{Chute, Layer};
 pub use terrain::{Tangent, Terrain};

@@ -10,7 +10,8 @@ use super::ground::{Bed, Chute, Towards};
 use super::{Flow, normal};
 use crate::real::{Real, dot, for_axis, per_axis};
 use crate::scheme::{
-    Cell, Diagnostics, Faces, Neighbours, Scheme, SchemeVisitor, Side, Spacing, Stencil, components,
+    Cell, Diagnostics, Faces, Forecasts, Neighbours, Scheme, SchemeVisitor, Side, Spacing, Stencil,
+    components,
 };
 use crate::time::{EULER, Stages};
 
@@ -249,6 +250,7 @@ impl<const D: usize, R: Real> Scheme<D, R> for Kinetic {
     type Ground = Chute<D, R>;
     type Forcing = ();
     type Primitives = [Density<R>; D];
+    type Forecast = ();
     type FaceStates = FaceStates<D, R>;
     /// Mass and momentum, with the face depth of a moving cell.
     type Flux = Flow<D, R>;
@@ -273,16 +275,20 @@ impl<const D: usize, R: Real> Scheme<D, R> for Kinetic {
     }
 
     #[inline(always)]
+    fn forecast(&self, _stencil: &impl Stencil<D, R, Flow<D, R>, Chute<D, R>>, _dt: R) {}
+    #[inline(always)]
     fn reconstruct(
         &self,
         stencil: &impl Stencil<D, R, Flow<D, R>, Chute<D, R>>,
         primitives: &[Density<R>; D],
+        _forecasts: &Forecasts<D, ()>,
+        _dt: R,
     ) -> FaceStates<D, R> {
         Self::face_states(self.variant.moving, &stencil.at([0; D]), primitives)
     }
 
     #[inline(always)]
-    fn flux(&self, axis: usize, left: &FaceStates<D, R>, right: &FaceStates<D, R>) -> Flow<D, R> {
+    fn flux(&self, axis: usize, left: &FaceStates<D, R>, right: &FaceStates<D, R>, _lambda: R) -> Flow<D, R> {
         Self::through(self.variant.moving, axis, left, right)
     }
 
@@ -373,8 +379,8 @@ impl<const D: usize, R: Real> Scheme<D, R> for Kinetic {
     }
     /// The flux of the moving depth; a resting edge cell of Verfahren 5 loses the other one (erratum 5).
     #[inline(always)]
-    fn outflow(&self, flux: &Flow<D, R>, _side: Side) -> R {
-        flux.h
+    fn outflow(&self, flux: &Flow<D, R>, _side: Side, lambda: R) -> R {
+        lambda * flux.h
     }
     fn yield_ratio(&self, stencil: &impl Stencil<D, R, Flow<D, R>, Chute<D, R>>) -> R {
         let near = stencil.star();

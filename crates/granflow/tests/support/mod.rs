@@ -1,54 +1,23 @@
-//! Builds the runs of the test suite: chutes, terrain from a function, both orders of the default scheme.
+//! Builds the runs of the test suite: chutes, terrain from a function; `super::tried` says of which scheme.
 #![allow(dead_code)]
+
+pub mod mountain;
 
 use granflow::grid::Grid;
 use granflow::kernels::Kernel;
 use granflow::savage_hutter::Flow;
-use granflow::savage_hutter::balanced::Balanced;
-use granflow::savage_hutter::friction::{Coulomb, Law};
 use granflow::savage_hutter::ground::{Bed, Chute, Terrain};
 use granflow::scheme::Boundary;
 use granflow::simulation::{Simulation, StepSize};
 
+#[allow(unused_imports)]
+pub use super::tried::{ORDERS, Order, Tried};
+
 /// Gravity of the runs in SI units.
 pub const GRAVITY: f64 = 9.81;
 
-/// A run of the default scheme on the bed `B`.
-pub type Run<const D: usize, B> = Simulation<D, Balanced<Law, B>>;
-
-/// The two orders of the default scheme.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Order {
-    /// `balanced`.
-    First,
-    /// `balanced_2`.
-    Second,
-}
-
-pub const ORDERS: [Order; 2] = [Order::First, Order::Second];
-
-impl Order {
-    pub fn scheme<B>(self, mu: f64, film: f64) -> Balanced<Law, B> {
-        match self {
-            Order::First => Balanced::first(Law::Coulomb(Coulomb { mu }), film),
-            Order::Second => Balanced::second(Law::Coulomb(Coulomb { mu }), film),
-        }
-    }
-    /// The step of an ordinary run.
-    pub fn courant(self) -> StepSize {
-        match self {
-            Order::First => StepSize::Courant(0.9),
-            Order::Second => StepSize::Courant(0.45),
-        }
-    }
-    /// The largest step the scheme allows.
-    pub fn limit(self) -> StepSize {
-        match self {
-            Order::First => StepSize::Courant(1.0),
-            Order::Second => StepSize::Courant(0.5),
-        }
-    }
-}
+/// A run of the scheme that is tried on the bed `B`.
+pub type Run<const D: usize, B> = Simulation<D, Tried<B>>;
 
 /// Square cells with one kind of boundary all round.
 pub fn grid<const D: usize>(cells: [usize; D], origin: [f64; D], size: f64, ends: Boundary) -> Grid<D> {
@@ -97,7 +66,7 @@ pub fn terrain<const D: usize>(
     (0..grid.count()).map(|number| at(grid.centre(grid.index(number)))).collect()
 }
 
-/// A run of the default scheme over given grounds, one for each cell.
+/// A run of the scheme that is tried over given grounds, one for each cell.
 pub fn run<const D: usize, B: Bed<D, f64>>(
     order: Order,
     (mu, film): (f64, f64),
@@ -107,7 +76,7 @@ pub fn run<const D: usize, B: Bed<D, f64>>(
     start: impl Fn([f64; D], &B) -> Flow<D, f64> + Sync,
 ) -> Run<D, B>
 where
-    Balanced<Law, B>: Kernel<D, Ground = B, State = Flow<D, f64>>,
+    Tried<B>: Kernel<D, Ground = B, State = Flow<D, f64>>,
 {
     let number = |index: [usize; D]| index[0] + if D > 1 { index[D - 1] * grid.cells[0] } else { 0 };
     Simulation::new(

@@ -1,6 +1,7 @@
 //! `[scheme]` of an avalanche: which method, which time step, which films.
 
 use granflow_model::savage_hutter::balanced::Balanced;
+use granflow_model::savage_hutter::energy_stable::EnergyStable;
 use granflow_model::savage_hutter::friction::Coulomb;
 use granflow_model::savage_hutter::ground::Chute;
 use granflow_model::savage_hutter::kinetic::{
@@ -28,7 +29,8 @@ pub(crate) struct Scheme {
     /// Courant number of the adaptive step: at most 1 (default 0.9) at first order, 0.5 (default 0.45) at second.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub courant: Option<f64>,
-    /// Thickness below which a cell is a film and is held (default 1e-6; 0 is allowed; without effect on verfahren_1..5).
+    /// Thickness below which a cell is a film and is held (default 1e-4 m on terrain, else 1e-6; 0 is allowed; without effect on
+    /// verfahren_1..5).
     #[serde(skip_serializing_if = "Option::is_none")]
     pub film: Option<f64>,
 }
@@ -47,8 +49,10 @@ pub struct Method<N> {
 #[serde(rename_all = "snake_case")]
 #[schemars(rename = "AvalancheSchemeName")]
 pub enum SchemeName {
-    /// Conservative, positive, exactly resting, first order: the default.
+    /// Conservative, positive, exactly resting, and its energy never grows; first order: the default.
     #[default]
+    EnergyStable,
+    /// Conservative, positive, exactly resting, without a law for the energy; first order.
     Balanced,
     /// The same at second order in space and time.
     #[serde(rename = "balanced_2")]
@@ -72,6 +76,7 @@ pub enum SchemeName {
 
 /// The names of all methods.
 pub(crate) const NAMES: &[&str] = &[
+    SchemeName::EnergyStable.as_str(),
     SchemeName::Balanced.as_str(),
     SchemeName::Balanced2.as_str(),
     SchemeName::Verfahren1.as_str(),
@@ -88,6 +93,7 @@ impl SchemeName {
         match self {
             Self::Balanced => "balanced",
             Self::Balanced2 => "balanced_2",
+            Self::EnergyStable => "energy_stable",
             Self::Verfahren1 => "verfahren_1",
             Self::Verfahren2 => "verfahren_2",
             Self::Verfahren3 => "verfahren_3",
@@ -99,7 +105,7 @@ impl SchemeName {
     /// Whether it is one of the five published methods, which know neither films nor rest.
     #[must_use]
     pub fn is_published(self) -> bool {
-        !matches!(self, Self::Balanced | Self::Balanced2)
+        !matches!(self, Self::Balanced | Self::Balanced2 | Self::EnergyStable)
     }
 
     /// What a case may say about the step.
@@ -109,6 +115,7 @@ impl SchemeName {
         match self {
             Self::Balanced => StepLimits::of(name, &OnChute::first(friction, 0.0)),
             Self::Balanced2 => StepLimits::of(name, &OnChute::second(friction, 0.0)),
+            Self::EnergyStable => StepLimits::of(name, &EnergyStable::<_, Chute<1, f64>>::new(friction, 0.0)),
             Self::Verfahren1 => published(VERFAHREN_1),
             Self::Verfahren2 => published(VERFAHREN_2),
             Self::Verfahren3 => published(VERFAHREN_3),
@@ -118,7 +125,7 @@ impl SchemeName {
     }
 }
 
-/// The balanced scheme, whose limits depend on nothing but its order.
+/// The balanced schemes, whose limits depend on nothing but their order.
 type OnChute = Balanced<Coulomb, Chute<1, f64>>;
 
 impl Scheme {
@@ -129,9 +136,9 @@ impl Scheme {
         Ok(stepping)
     }
 
-    /// The method as the run takes it, under the name that its kind of case has for it.
-    pub fn method<N>(&self, name: N) -> Method<N> {
-        Method { name, film: if self.name.is_published() { 0.0 } else { self.film.unwrap_or(1e-6) } }
+    /// The method as the run takes it, under the name that its kind of case has for it, with the film of that kind.
+    pub fn method<N>(&self, name: N, film: f64) -> Method<N> {
+        Method { name, film: if self.name.is_published() { 0.0 } else { self.film.unwrap_or(film) } }
     }
 
     /// What has no effect, if anything.

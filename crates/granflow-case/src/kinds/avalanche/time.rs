@@ -75,7 +75,7 @@ impl Time {
             return Err(look.fault(
                 "time.until",
                 format!("{name} never reaches speed 0, so until = \"rest\" would never end"),
-                "add rest_speed = 1e-12, or use the scheme balanced, which stops exactly",
+                "add rest_speed = 1e-12, or use the scheme energy_stable, which stops exactly",
             ));
         }
         Ok(Ends {

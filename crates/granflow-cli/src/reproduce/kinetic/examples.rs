@@ -122,12 +122,13 @@ pub const EXAMPLES: [Example; 7] = [
 ];
 
 /// The schemes that every example is run with.
-pub const SCHEMES: [(&str, &str); 7] = [
+pub const SCHEMES: [(&str, &str); 8] = [
     ("verfahren_1", "Verfahren 1 (Scheme 1)"),
     ("verfahren_2", "Verfahren 2"),
     ("verfahren_3", "Verfahren 3"),
     ("verfahren_4", "Verfahren 4 (Scheme 2)"),
     ("verfahren_5", "Verfahren 5 (Scheme 3)"),
+    ("energy_stable", "energy_stable"),
     ("balanced", "balanced"),
     ("balanced_2", "balanced_2"),
 ];

@@ -183,7 +183,7 @@ fn silo(table: &mut Table, runs: &Runs) {
                 table.row(place, &what, Published(0.367), gain, Absolute, 5e-4);
             }
             name => {
-                let within = if name.starts_with("balanced") { 1e-11 } else { 1e-2 };
+                let within = if name.starts_with("verfahren") { 1e-2 } else { 1e-11 };
                 let what = format!("mass gained in 10000 steps in %, {}", run.scheme.1);
                 table.row(place, &what, Exact(0.0), gain, Absolute, within);
             }

@@ -32,13 +32,13 @@ impl<const D: usize, const UNIFORM: bool, L: SimdVector, T: Scheme<D, L>> Strip<
             let at = outlet.cell[0] as usize - columns[0] + 1 + moved;
             // SAFETY: a face of a cell of the strip; the row ends with room for a vector.
             let flux: T::Flux = unsafe { row.get(at as isize) };
+            let lambda = self.lambda(axis);
             let leaves = if side == 0 {
-                -self.scheme.outflow(&flux, Side::Right)
+                -self.scheme.outflow(&flux, Side::Right, lambda)
             } else {
-                self.scheme.outflow(&flux, Side::Left)
+                self.scheme.outflow(&flux, Side::Left, lambda)
             };
-            let lambda = self.dt.first() * self.spacing.inv[axis].first();
-            outflow[outlet.outlet as usize] += lambda * leaves.first();
+            outflow[outlet.outlet as usize] += leaves.first();
         }
     }
 }

@@ -4,9 +4,9 @@ use super::update::Vector;
 use super::{Around, Strip};
 use crate::lanes::SimdVector;
 use crate::sweep::reducer::TileReducer;
-use crate::sweep::scratch::Scratch;
+use crate::sweep::scratch::{Row as ScratchRow, Scratch};
 use crate::tiles::{Tile, TileStats};
-use granflow_model::scheme::{Components, Faces, Scheme};
+use granflow_model::scheme::{Components, Faces, Forecasts, Scheme};
 
 /// A row under way: the columns of the block, the row whose face states are found, the first row of the block.
 #[derive(Clone, Copy)]
@@ -21,6 +21,11 @@ impl Row {
     #[inline(always)]
     fn parity(self) -> usize {
         (self.number - self.first + 2) as usize % 2
+    }
+    /// Which of three scratch rows holds row `number`, at most one away.
+    #[inline(always)]
+    fn third(self, number: isize) -> usize {
+        (number - self.first + 3) as usize % 3
     }
 }
 
@@ -93,20 +98,69 @@ impl<const D: usize, const UNIFORM: bool, L: SimdVector, T: Scheme<D, L>> Strip<
     /// Find the face states of row `number`.
     #[inline(always)]
     fn find_face_states(&self, row: Row, scratch: &mut Scratch<D, L, T>) {
-        let above = &mut scratch.face_states[row.parity()];
+        if T::Forecast::COUNT > 0 {
+            self.find_forecasts(row, &mut scratch.forecasts);
+        }
+        let Scratch { forecasts, face_states, .. } = scratch;
+        let above = &mut face_states[row.parity()];
         let place = self.start(row.columns, row.number);
         // One vector ahead: its roots and divisions are under way while this one's sums are formed.
         let mut primitives = self.scheme.primitives(&self.cell(place));
         for m in Self::vectors(row.columns) {
             self.prefetch_rows(place + m);
             let next = self.scheme.primitives(&self.cell(place + m + L::WIDTH));
-            let states = self.scheme.reconstruct(&Around { strip: self, place: place + m }, &primitives);
+            let stencil = Around { strip: self, place: place + m };
             // SAFETY: a vector of the row.
-            unsafe { above.put(m, states) };
+            unsafe {
+                let forecasts = Self::forecasts(forecasts, row, m as isize);
+                above.put(m as isize, self.scheme.reconstruct(&stencil, &primitives, &forecasts, self.dt));
+            }
             primitives = next;
         }
         if row.number <= row.first {
             above.fill_halo(Self::end(row.columns));
+        }
+    }
+
+    /// Forecast the row above `number` (in one dimension the row itself), before the first row also that and the one below.
+    #[inline(always)]
+    fn find_forecasts(&self, row: Row, rows: &mut [ScratchRow<L, T::Forecast>; 3]) {
+        let [from, to] = match D {
+            1 => [row.number; 2],
+            _ if row.number < row.first => [row.number - 1, row.number + 1],
+            _ => [row.number + 1; 2],
+        };
+        for number in from..=to {
+            let place = self.start(row.columns, number);
+            let here = &mut rows[row.third(number)];
+            // From the cell before the first to the one behind the last.
+            for m in (0..Self::end(row.columns) + 2).step_by(L::WIDTH) {
+                let stencil = Around { strip: self, place: place + m - 1 };
+                // SAFETY: it begins before the first cell or at one of the row.
+                unsafe { here.put(m as isize - 1, self.scheme.forecast(&stencil, self.dt)) };
+            }
+        }
+    }
+
+    /// The forecasts around the cells from `at` on.
+    ///
+    /// # Safety
+    /// A vector of the row.
+    #[inline(always)]
+    unsafe fn forecasts(
+        rows: &[ScratchRow<L, T::Forecast>; 3],
+        row: Row,
+        at: isize,
+    ) -> Forecasts<D, T::Forecast> {
+        let here = &rows[row.third(row.number)];
+        // SAFETY: as the caller promises.
+        unsafe {
+            let (mut lo, mut hi) = ([here.get(at - 1); D], [here.get(at + 1); D]);
+            if D > 1 {
+                lo[D - 1] = rows[row.third(row.number - 1)].get(at);
+                hi[D - 1] = rows[row.third(row.number + 1)].get(at);
+            }
+            Forecasts { here: here.get(at), lo, hi }
         }
     }
 
@@ -129,11 +183,11 @@ impl<const D: usize, const UNIFORM: bool, L: SimdVector, T: Scheme<D, L>> Strip<
             unsafe {
                 let (left, right) = (here.get(at - 1), here.get(at));
                 if updates {
-                    across.put(m, self.scheme.flux(0, &left, &right));
+                    across.put(at, self.scheme.flux(0, &left, &right, self.lambda(0)));
                 }
                 if T::Corner::COUNT > 0 {
                     let (below, above) = (above.get(at - 1), above.get(at));
-                    high.put(m, self.scheme.corner([[&left, &right], [&below, &above]]));
+                    high.put(at, self.scheme.corner([[&left, &right], [&below, &above]]));
                 }
             }
         }
@@ -143,7 +197,7 @@ impl<const D: usize, const UNIFORM: bool, L: SimdVector, T: Scheme<D, L>> Strip<
     /// Find the fluxes along y between row `number` and the one below, and update that (in one dimension the row itself).
     #[inline(always)]
     fn update_row(&self, row: Row, scratch: &mut Scratch<D, L, T>, reducer: &mut TileReducer) {
-        let Scratch { face_states, across, below, corners, updated, in_strip } = scratch;
+        let Scratch { face_states, across, below, corners, updated, in_strip, .. } = scratch;
         let (Row { columns, number, first }, parity) = (row, row.parity());
         let above = &face_states[parity];
         let here = if D > 1 { &face_states[1 - parity] } else { above };
@@ -161,9 +215,9 @@ impl<const D: usize, const UNIFORM: bool, L: SimdVector, T: Scheme<D, L>> Strip<
                 let states = here.get(at);
                 let mut faces = [Faces { lo: across.get(at), hi: across.get(at + 1) }; D];
                 if D > 1 {
-                    let up = self.scheme.flux(D - 1, &states, &above.get(at));
+                    let up = self.scheme.flux(D - 1, &states, &above.get(at), self.lambda(D - 1));
                     faces[D - 1] = Faces { lo: below.get(at), hi: up };
-                    below.put(m, up);
+                    below.put(at, up);
                 }
                 if updates {
                     if m > 0 {
@@ -177,7 +231,7 @@ impl<const D: usize, const UNIFORM: bool, L: SimdVector, T: Scheme<D, L>> Strip<
                     if L::any(mask) {
                         let corners = [[low.get(at), low.get(at + 1)], [high.get(at), high.get(at + 1)]];
                         let vector = Vector { column: m, place: place + m, mask };
-                        updated.put(m, self.update(reducer, vector, &states, &faces, &corners));
+                        updated.put(at, self.update(reducer, vector, &states, &faces, &corners));
                     }
                 }
             }

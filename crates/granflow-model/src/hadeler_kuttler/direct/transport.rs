@@ -8,7 +8,7 @@ use super::super::scheme::{FIRST_ORDER, FaceStates};
 use super::super::table::Table;
 use super::super::{Ground, Pile, Source};
 use super::unsteady::Unsteady;
-use crate::scheme::{Cell, Scheme, Spacing, Stencil};
+use crate::scheme::{Cell, Forecasts, Scheme, Spacing, Stencil};
 use alloc::vec;
 use alloc::vec::Vec;
 
@@ -69,12 +69,17 @@ fn meet<const D: usize>(
     below: &[FaceStates<D, f64>; 3],
     above: &[FaceStates<D, f64>; 3],
 ) -> Face {
-    let flux = |low: &FaceStates<D, f64>, high: &FaceStates<D, f64>| FIRST_ORDER.flux(axis, low, high);
+    let flux = |low: &FaceStates<D, f64>, high: &FaceStates<D, f64>| FIRST_ORDER.flux(axis, low, high, 0.0);
     Face {
         below: flux(&below[1], &above[2]),
         above: flux(&below[2], &above[1]),
         poured: flux(&below[0], &above[0]),
     }
+}
+
+/// A sandpile is not forecast.
+const fn none<const D: usize>() -> Forecasts<D, ()> {
+    Forecasts { here: (), lo: [(); D], hi: [(); D] }
 }
 
 /// What enters a cell is rounding below this share of the largest source.
@@ -95,8 +100,9 @@ pub(super) struct Rolling<const D: usize> {
 impl<const D: usize> Slope<'_, D> {
     fn edges(&self, place: usize) -> [FaceStates<D, f64>; 3] {
         let spacing = Spacing::new(self.size);
-        [(0.0, true), (1.0, false), (0.0, false)]
-            .map(|(v, poured)| FIRST_ORDER.reconstruct(&Even { slope: self, place, spacing, v, poured }, &()))
+        [(0.0, true), (1.0, false), (0.0, false)].map(|(v, poured)| {
+            FIRST_ORDER.reconstruct(&Even { slope: self, place, spacing, v, poured }, &(), &none(), 0.0)
+        })
     }
 
     /// The faces below each place.

@@ -7,7 +7,7 @@ use super::variant::{HadelerKuttler, Slopes};
 use crate::hadeler_kuttler::{Ground, Pile, Source};
 use crate::limiter::Limited;
 use crate::real::{Real, for_axis};
-use crate::scheme::{Cell, Diagnostics, Faces, Scheme, SchemeVisitor, Side, Spacing, Stencil};
+use crate::scheme::{Cell, Diagnostics, Faces, Forecasts, Scheme, SchemeVisitor, Side, Spacing, Stencil};
 use crate::time::{EULER, SSP_RK2, Stages};
 
 impl<const D: usize, R: Real, const LIMITED: bool> Scheme<D, R> for HadelerKuttler<LIMITED>
@@ -18,6 +18,7 @@ where
     type Ground = Ground<D, R>;
     type Forcing = Source<D, R>;
     type Primitives = ();
+    type Forecast = ();
     type FaceStates = FaceStates<D, R, <Limited<LIMITED> as SlopeStorage>::CellSlopes<D, R>>;
     type Flux = R;
     type Corner = R;
@@ -46,10 +47,14 @@ where
     #[inline(always)]
     fn primitives(&self, _here: &Cell<Pile<R>, Ground<D, R>, Source<D, R>>) {}
     #[inline(always)]
+    fn forecast(&self, _stencil: &impl Stencil<D, R, Pile<R>, Ground<D, R>, Source<D, R>>, _dt: R) {}
+    #[inline(always)]
     fn reconstruct(
         &self,
         stencil: &impl Stencil<D, R, Pile<R>, Ground<D, R>, Source<D, R>>,
         _: &(),
+        _forecasts: &Forecasts<D, ()>,
+        _dt: R,
     ) -> Self::FaceStates {
         let constant: Self::FaceStates = constant(stencil, [0; D]);
         let theta = match self.slopes {
@@ -60,7 +65,7 @@ where
         linear(stencil, &constant, R::select(constant.place.inside(), theta, R::splat(1.0)))
     }
     #[inline(always)]
-    fn flux(&self, axis: usize, left: &Self::FaceStates, right: &Self::FaceStates) -> R {
+    fn flux(&self, axis: usize, left: &Self::FaceStates, right: &Self::FaceStates, _lambda: R) -> R {
         flux(axis, left, right)
     }
     #[inline(always)]
@@ -131,8 +136,8 @@ where
         source.rate()
     }
     #[inline(always)]
-    fn outflow(&self, flux: &R, _side: Side) -> R {
-        -*flux
+    fn outflow(&self, flux: &R, _side: Side, lambda: R) -> R {
+        -(lambda * *flux)
     }
     /// |grad(u + b)| in the cell: 1 is the steepest slope.
     fn yield_ratio(&self, stencil: &impl Stencil<D, R, Pile<R>, Ground<D, R>, Source<D, R>>) -> R {

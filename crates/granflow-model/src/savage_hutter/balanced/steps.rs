@@ -11,7 +11,7 @@ use crate::savage_hutter::flux::{Density, Half};
 use crate::savage_hutter::friction::Friction;
 use crate::savage_hutter::ground::{Bed, Towards};
 use crate::savage_hutter::{Flow, normal};
-use crate::scheme::{Cell, Diagnostics, Faces, Scheme, SchemeVisitor, Side, Spacing, Stencil};
+use crate::scheme::{Cell, Diagnostics, Faces, Forecasts, Scheme, SchemeVisitor, Side, Spacing, Stencil};
 use crate::time::{EULER, SSP_RK2, Stages};
 use core::marker::PhantomData;
 
@@ -24,6 +24,7 @@ where
     type Ground = B;
     type Forcing = ();
     type Primitives = [Density<R>; D];
+    type Forecast = ();
     type FaceStates = FaceStatesOf<D, R, B, ORDER>;
     type Flux = Flux<D, R>;
     type Corner = ();
@@ -57,10 +58,14 @@ where
     }
 
     #[inline(always)]
+    fn forecast(&self, _stencil: &impl Stencil<D, R, Flow<D, R>, B>, _dt: R) {}
+    #[inline(always)]
     fn reconstruct(
         &self,
         stencil: &impl Stencil<D, R, Flow<D, R>, B>,
         primitives: &[Density<R>; D],
+        _forecasts: &Forecasts<D, ()>,
+        _dt: R,
     ) -> Self::FaceStates {
         let near = stencil.star();
         let Cell { state, ground, .. } = near.here;
@@ -113,7 +118,7 @@ where
     }
 
     #[inline(always)]
-    fn flux(&self, axis: usize, left: &Self::FaceStates, right: &Self::FaceStates) -> Flux<D, R> {
+    fn flux(&self, axis: usize, left: &Self::FaceStates, right: &Self::FaceStates, _lambda: R) -> Flux<D, R> {
         let (zero, one) = (R::zero(), R::splat(1.0));
         let (half_a, half_b) = (left.half[axis][1], right.half[axis][0]);
         let class = left.class.and(right.class);
@@ -246,8 +251,8 @@ where
         ground.is_nodata()
     }
     #[inline(always)]
-    fn outflow(&self, flux: &Flux<D, R>, _side: Side) -> R {
-        flux.mass
+    fn outflow(&self, flux: &Flux<D, R>, _side: Side, lambda: R) -> R {
+        lambda * flux.mass
     }
     fn yield_ratio(&self, stencil: &impl Stencil<D, R, Flow<D, R>, B>) -> R {
         let near = stencil.star();

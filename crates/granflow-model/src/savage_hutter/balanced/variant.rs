@@ -2,7 +2,7 @@
 
 use core::marker::PhantomData;
 
-/// The default scheme: friction law, thinnest moving depth, order of accuracy. `ORDER` is the order where it is known when the
+/// The scheme: friction law, thinnest moving depth, order of accuracy. `ORDER` is the order where it is known when the
 /// inner loops are compiled, 1 or 2, so that each order has loops of its own; else 0.
 #[derive(Clone, Copy, Debug)]
 #[repr(C)]

@@ -27,6 +27,27 @@ pub trait Bed<const D: usize, R: Real>: Components<R> {
     fn plane(&self) -> Self::Plane;
     /// Pressure coefficient along `axis`: P = beta h^2/2.
     fn beta(&self, axis: usize) -> R;
+    /// The free surface, as far as [`Bed::rise`] must know it.
+    type Surface: Components<R>;
+    /// The free surface of a layer of depth `h`; `size` are the lengths of a cell.
+    fn surface(&self, h: R, size: [R; D]) -> Self::Surface;
+    /// psi of the second of two neighbours along `axis` less psi of the first; where psi is no function of the cell (a chute whose
+    /// beta varies) by the means of both.
+    fn rise(axis: usize, between: [&Self::Surface; 2]) -> R;
+    /// psi, 0 where it is no function of the cell (a chute).
+    fn potential(surface: &Self::Surface) -> R;
+    /// d psi/dh (terrain: g c^2, chute: beta), 0 outside the data.
+    fn head(&self) -> R;
+    /// 1/[`Bed::head`], 0 outside the data.
+    fn per_head(&self) -> R;
+    /// M v in a plane: the acceleration that a horizontal force per mass leaves.
+    fn metric(plane: &Self::Plane, v: [R; D]) -> [R; D];
+    /// Squared length of the tangential vector of a plane with horizontal part `v`.
+    fn square_in(plane: &Self::Plane, v: [R; D]) -> R;
+    /// Length along a plane of a unit step along `axis`.
+    fn stretch_in(plane: &Self::Plane, axis: usize) -> R;
+    /// The acceleration of free fall.
+    fn gravity(&self) -> R;
     /// psi at the neighbour minus psi here, depths `h_there` and `h`; `dx` is their distance.
     #[inline(always)]
     fn potential_jump(&self, axis: usize, towards: Towards, there: &Self, h: R, h_there: R, dx: R) -> R {
@@ -53,7 +74,10 @@ pub trait Bed<const D: usize, R: Real>: Components<R> {
     /// Squared physical length of the tangential vector with horizontal part `v`.
     fn square(&self, v: [R; D]) -> R;
     /// Length along the bed of a unit step along `axis`.
-    fn stretch(&self, axis: usize) -> R;
+    #[inline(always)]
+    fn stretch(&self, axis: usize) -> R {
+        Self::stretch_in(&self.plane(), axis)
+    }
     /// The velocities in two tangent planes, each turned into the other's at the same speed along the bed.
     fn parallel_transport(w: [[R; D]; 2], planes: [&Self::Plane; 2]) -> [[R; D]; 2];
     /// Thickness normal to the bed.

@@ -1,7 +1,7 @@
 //! The papers' chute.
 
 use super::bed::{Bed, Towards, straight};
-use crate::real::{Real, dot};
+use crate::real::{Real, dot, per_axis};
 use crate::scheme::components;
 
 /// The papers' chute (report eqs. 1 and 13), in their scaling; also a tilted plane in two dimensions.
@@ -21,9 +21,61 @@ pub struct Chute<const D: usize, R> {
 
 components!([const D: usize, R: Real] Chute<D, R> { tilt: [R; D], beta: R, cos: R, curvature: R });
 
+/// The free surface over a chute.
+#[derive(Clone, Copy, Debug)]
+pub struct Layer<const D: usize, R> {
+    h: R,
+    beta: R,
+    /// What the chute falls within half a cell.
+    fall: [R; D],
+}
+components!([const D: usize, R: Real] Layer<D, R> { h: R, beta: R, fall: [R; D] });
+
 impl<const D: usize, R: Real> Bed<D, R> for Chute<D, R> {
     type On<L: Real> = Chute<D, L>;
     type Plane = ();
+    type Surface = Layer<D, R>;
+    #[inline(always)]
+    fn surface(&self, h: R, size: [R; D]) -> Layer<D, R> {
+        Layer { h, beta: self.beta, fall: per_axis!(k => self.tilt[k] * size[k] * R::splat(0.5)) }
+    }
+    /// beta (h_b - h_a) + h (beta_b - beta_a)/2 with the means of beta and h, less the fall of the chute: the pressure is
+    /// beta h^2/2.
+    #[inline(always)]
+    fn rise(axis: usize, [a, b]: [&Layer<D, R>; 2]) -> R {
+        let by_depth = (a.beta + b.beta) * R::splat(0.5) * (b.h - a.h);
+        let by_beta = (b.beta - a.beta) * (a.h + b.h) * R::splat(0.25);
+        (by_depth + by_beta) - (a.fall[axis] + b.fall[axis])
+    }
+    #[inline(always)]
+    fn potential(_surface: &Layer<D, R>) -> R {
+        R::zero()
+    }
+    #[inline(always)]
+    fn head(&self) -> R {
+        self.beta
+    }
+    #[inline(always)]
+    fn per_head(&self) -> R {
+        let none = self.beta.le(R::zero());
+        R::select(none, R::zero(), R::splat(1.0) / R::select(none, R::splat(1.0), self.beta))
+    }
+    #[inline(always)]
+    fn stretch_in(_plane: &(), _axis: usize) -> R {
+        R::splat(1.0)
+    }
+    #[inline(always)]
+    fn metric(_plane: &(), v: [R; D]) -> [R; D] {
+        v
+    }
+    #[inline(always)]
+    fn square_in(_plane: &(), v: [R; D]) -> R {
+        dot(v, v)
+    }
+    #[inline(always)]
+    fn gravity(&self) -> R {
+        (self.cos * self.cos + dot(self.tilt, self.tilt)).sqrt()
+    }
     #[inline(always)]
     fn exact(self) -> Self {
         self
@@ -73,10 +125,6 @@ impl<const D: usize, R: Real> Bed<D, R> for Chute<D, R> {
     #[inline(always)]
     fn square(&self, v: [R; D]) -> R {
         dot(v, v)
-    }
-    #[inline(always)]
-    fn stretch(&self, _axis: usize) -> R {
-        R::splat(1.0)
     }
     #[inline(always)]
     fn parallel_transport(w: [[R; D]; 2], _planes: [&(); 2]) -> [[R; D]; 2] {

@@ -43,19 +43,6 @@ impl<const D: usize, R: Real> Terrain<D, R> {
     fn fall(&self) -> R {
         self.gravity * self.cos
     }
-    /// g c^2 \[m/s^2\]: pressure at the bed of a column of H = 1, beta across the slope.
-    #[inline(always)]
-    fn head(&self) -> R {
-        self.gravity * (self.cos * self.cos)
-    }
-    #[inline(always)]
-    fn metric(&self, mut v: [R; D]) -> [R; D] {
-        let along = self.cos * self.cos * dot(self.slope, v);
-        for_axis!(axis in D => {
-            v[axis] = v[axis] - self.slope[axis] * along;
-        });
-        v
-    }
 }
 
 impl Terrain<2, f64> {
@@ -142,6 +129,51 @@ fn stretch<R: Real>(t: R) -> R {
 impl<const D: usize, R: Real> Bed<D, R> for Terrain<D, R> {
     type On<L: Real> = Terrain<D, L>;
     type Plane = Tangent<D, R>;
+    /// psi
+    type Surface = R;
+    #[inline(always)]
+    fn surface(&self, h: R, _size: [R; D]) -> R {
+        self.gravity * self.level + self.head() * h
+    }
+    #[inline(always)]
+    fn rise(_axis: usize, [a, b]: [&R; 2]) -> R {
+        *b - *a
+    }
+    #[inline(always)]
+    fn potential(surface: &R) -> R {
+        *surface
+    }
+    /// g c^2 \[m/s^2\]: pressure at the bed of a column of H = 1, beta across the slope.
+    #[inline(always)]
+    fn head(&self) -> R {
+        self.gravity * (self.cos * self.cos)
+    }
+    #[inline(always)]
+    fn per_head(&self) -> R {
+        let per = (R::splat(1.0) + dot(self.slope, self.slope)) * (R::splat(1.0) / self.gravity);
+        R::select(self.is_nodata(), R::zero(), per)
+    }
+    #[inline(always)]
+    fn stretch_in(plane: &Tangent<D, R>, axis: usize) -> R {
+        (R::splat(1.0) + plane.slope[axis] * plane.slope[axis]).sqrt()
+    }
+    #[inline(always)]
+    fn metric(plane: &Tangent<D, R>, mut v: [R; D]) -> [R; D] {
+        let along = plane.square * dot(plane.slope, v);
+        for_axis!(axis in D => {
+            v[axis] = v[axis] - plane.slope[axis] * along;
+        });
+        v
+    }
+    #[inline(always)]
+    fn square_in(plane: &Tangent<D, R>, v: [R; D]) -> R {
+        let up = dot(plane.slope, v);
+        dot(v, v) + up * up
+    }
+    #[inline(always)]
+    fn gravity(&self) -> R {
+        self.gravity
+    }
     #[inline(always)]
     fn exact(self) -> Self {
         // One step of Newton's: 6e-8 become 5e-15.
@@ -167,7 +199,7 @@ impl<const D: usize, R: Real> Bed<D, R> for Terrain<D, R> {
     }
     #[inline(always)]
     fn driving_force(&self, lo: [R; D], hi: [R; D], per: [R; D]) -> [R; D] {
-        self.metric(straight(lo, hi, per))
+        Self::metric(&self.plane(), straight(lo, hi, per))
     }
     #[inline(always)]
     fn uniform_driving_force(&self) -> Option<[R; D]> {
@@ -209,12 +241,7 @@ impl<const D: usize, R: Real> Bed<D, R> for Terrain<D, R> {
     }
     #[inline(always)]
     fn square(&self, v: [R; D]) -> R {
-        let up = dot(self.slope, v);
-        dot(v, v) + up * up
-    }
-    #[inline(always)]
-    fn stretch(&self, axis: usize) -> R {
-        (R::splat(1.0) + self.slope[axis] * self.slope[axis]).sqrt()
+        Self::square_in(&self.plane(), v)
     }
     #[inline(always)]
     fn parallel_transport(w: [[R; D]; 2], planes: [&Tangent<D, R>; 2]) -> [[R; D]; 2] {

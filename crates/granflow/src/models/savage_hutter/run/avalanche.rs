@@ -13,14 +13,14 @@ use granflow_engine::kernels::Kernel;
 use granflow_engine::simulation::{BuildError, Simulation, StepSize};
 use granflow_model::savage_hutter::Flow;
 use granflow_model::savage_hutter::balanced::Balanced;
+use granflow_model::savage_hutter::energy_stable::EnergyStable;
 use granflow_model::savage_hutter::friction::{Coulomb, Friction, Law, Resistance};
 use granflow_model::savage_hutter::ground::{Bed, Chute};
-use granflow_model::scheme::Scheme;
 use std::sync::Arc;
 
 type Field<'a, const D: usize, T> = Box<dyn Fn([f64; D]) -> T + Sync + 'a>;
 
-/// An avalanche to be started: SI units, the default scheme at first order, mu = 0.4, nothing on the bed.
+/// An avalanche to be started: SI units, the default scheme, mu = 0.4, nothing on the bed.
 pub struct Avalanche<'a, const D: usize, B> {
     grid: Grid<D>,
     bed: B,
@@ -41,13 +41,13 @@ pub struct Slope {
 }
 
 impl<'a, const D: usize, B> Avalanche<'a, D, B> {
-    fn over(grid: Grid<D>, bed: B, threshold: f64) -> Self {
+    fn over(grid: Grid<D>, bed: B, film: f64, threshold: f64) -> Self {
         Avalanche {
             grid,
             bed,
             law: Law::Coulomb(Coulomb { mu: 0.4 }),
             second_order: false,
-            film: 1e-6,
+            film,
             threshold,
             step: None,
             thickness: Box::new(|_| 0.0),
@@ -81,7 +81,7 @@ impl<'a, const D: usize, B> Avalanche<'a, D, B> {
     pub fn second_order(self) -> Self {
         Avalanche { second_order: true, ..self }
     }
-    /// Thickness below which a cell is a film and is held \[m\].
+    /// Thickness below which a cell is a film and is held \[m\]: 1e-4 on terrain and 1e-6 on a plane unless it is said.
     #[must_use]
     pub fn film(self, film: f64) -> Self {
         Avalanche { film, ..self }
@@ -108,12 +108,29 @@ impl<'a, const D: usize, B> Avalanche<'a, D, B> {
     where
         G: Bed<D, f64> + 'static,
         Balanced<Law, G>: Kernel<D, State = Flow<D, f64>, Ground = G>,
+        EnergyStable<Law, G>: Kernel<D, State = Flow<D, f64>, Ground = G>,
     {
-        let Avalanche { grid, law, second_order, film, threshold, step, thickness, velocity, .. } = self;
-        let (name, scheme) = match second_order {
-            false => ("balanced", Balanced::<Law, G>::first(law, film)),
-            true => ("balanced_2", Balanced::<Law, G>::second(law, film)),
-        };
+        let (law, film) = (self.law, self.film);
+        if self.second_order {
+            self.run_by("balanced_2", Balanced::<Law, G>::second(law, film), domain, on_terrain, ground)
+        } else {
+            self.run_by("energy_stable", EnergyStable::<Law, G>::new(law, film), domain, on_terrain, ground)
+        }
+    }
+
+    /// The same with a scheme.
+    fn run_by<G: Bed<D, f64> + 'static, S>(
+        self,
+        name: &'static str,
+        scheme: S,
+        domain: impl Domain,
+        on_terrain: bool,
+        ground: impl Fn([usize; D]) -> G + Sync,
+    ) -> Result<Box<dyn Run>, BuildError>
+    where
+        S: Kernel<D, State = Flow<D, f64>, Ground = G> + 'static,
+    {
+        let Avalanche { grid, law, film, threshold, step, thickness, velocity, .. } = self;
         let step = step.unwrap_or(StepSize::Courant(scheme.suggested_courant()));
         check_law(law)?;
         check_value("threshold", threshold, "a finite number >= 0", |threshold| threshold >= 0.0)?;
@@ -132,7 +149,7 @@ impl<'a, const D: usize, B> Avalanche<'a, D, B> {
         };
         let simulation = Simulation::new(scheme, grid, step, &ground, state)?;
         let plane = Plane::of(&grid, Arc::new(domain));
-        let physics = Flowing::<Balanced<Law, G>>::new(name, film, on_terrain).with_threshold(threshold);
+        let physics = Flowing::<S>::new(name, film, on_terrain).with_threshold(threshold);
         Ok(Box::new(Simulated::new(simulation, physics, plane)))
     }
 }
@@ -151,7 +168,8 @@ impl<'a, const D: usize> Avalanche<'a, D, Slope> {
     /// On a plane of this inclination \[radians\], downhill along +x, under gravity.
     #[must_use]
     pub fn on_plane(grid: Grid<D>, angle: f64) -> Self {
-        Self::over(grid, Slope { angle, gravity: GRAVITY, epsilon: 1.0 }, granflow_case::chute::THRESHOLD)
+        let slope = Slope { angle, gravity: GRAVITY, epsilon: 1.0 };
+        Self::over(grid, slope, granflow_case::chute::FILM, granflow_case::chute::THRESHOLD)
     }
     /// In the papers' scaling: lengths by L, heights by H = epsilon L, times by sqrt(L/g).
     #[must_use]
@@ -199,6 +217,7 @@ impl<'a> Avalanche<'a, 2, granflow_geo::terrain::Terrain> {
         Self::over(
             grid,
             granflow_geo::terrain::Terrain::new(bed, curvature),
+            granflow_case::terrain::FILM,
             granflow_case::terrain::THRESHOLD,
         )
     }

@@ -14,6 +14,7 @@ use granflow_engine::simulation::Simulation;
 
 use granflow_model::savage_hutter::Flow;
 use granflow_model::savage_hutter::balanced::Balanced;
+use granflow_model::savage_hutter::energy_stable::EnergyStable;
 use granflow_model::savage_hutter::friction::Coulomb;
 use granflow_model::savage_hutter::ground::Chute;
 use granflow_model::savage_hutter::kinetic::{
@@ -33,6 +34,7 @@ fn on<const D: usize>(run: &RunPlan, plan: Plan) -> Result<Box<dyn Run>, StartEr
     let published = |variant: Variant| variant.with(Coulomb { mu });
     match name {
         SchemeName::Balanced => simulate::<D, _>(run, plan, Balanced::first(law, film)),
+        SchemeName::EnergyStable => simulate::<D, _>(run, plan, EnergyStable::new(law, film)),
         SchemeName::Balanced2 => simulate::<D, _>(run, plan, Balanced::second(law, film)),
         SchemeName::Verfahren1 => simulate::<D, _>(run, plan, published(VERFAHREN_1)),
         SchemeName::Verfahren2 => simulate::<D, _>(run, plan, published(VERFAHREN_2)),

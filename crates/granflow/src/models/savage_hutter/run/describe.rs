@@ -9,7 +9,7 @@ use crate::run::Run;
 use granflow_case::avalanche::Material;
 use granflow_case::chute::Plan as OnChute;
 #[cfg(feature = "geo")]
-use granflow_case::terrain::{Order, Plan as OnTerrain};
+use granflow_case::terrain::{Plan as OnTerrain, TerrainScheme};
 use granflow_case::{Axis, RunPlan, Side};
 #[cfg(feature = "geo")]
 use granflow_geo::terrain::Terrain;
@@ -32,8 +32,8 @@ pub(crate) fn chute(run: &RunPlan, plan: OnChute) -> Result<Vec<Line>, StartErro
 #[cfg(feature = "geo")]
 pub(crate) fn terrain(run: &RunPlan, plan: &OnTerrain) -> Result<Vec<Line>, StartError> {
     let order = match plan.scheme.name {
-        Order::First => "first order",
-        Order::Second => "second order",
+        TerrainScheme::EnergyStable | TerrainScheme::Balanced => "first order",
+        TerrainScheme::Balanced2 => "second order",
     };
     let mut lines = case(run, material(&plan.material), &format!("{order}, film {:e}, ", plan.scheme.film));
     lines.push(threshold(run, " m"));

@@ -2,11 +2,13 @@
 
 use crate::speed::{Begun, COURANT, Extent, Setup, grid};
 use granflow_engine::grid::Grid;
+use granflow_engine::kernels::Kernel;
 use granflow_engine::simulation::Simulation;
 use granflow_geo::raster::Raster;
 use granflow_geo::terrain::{Curvature, Terrain};
 use granflow_model::savage_hutter::Flow;
 use granflow_model::savage_hutter::balanced::Balanced;
+use granflow_model::savage_hutter::energy_stable::EnergyStable;
 use granflow_model::savage_hutter::friction::{Coulomb, Law};
 use granflow_model::savage_hutter::ground::{self, Chute};
 use granflow_model::savage_hutter::kinetic::{FaceDepth, Kinetic, VERFAHREN_1, VERFAHREN_5, Variant};
@@ -19,35 +21,49 @@ pub(crate) const SETUPS: &[Setup] = &[
         about: "first order, an inclined plane",
         dimensions: 2,
         dry: true,
-        begin: |extent| Box::new(on_plane::<2>(false, extent)),
+        begin: |extent| Box::new(on_plane::<2, _>(balanced(false), extent)),
     },
     Setup {
         name: "balanced_terrain",
         about: "first order, a bed of varying slope and curvature",
         dimensions: 2,
         dry: true,
-        begin: |extent| Box::new(on_terrain(false, extent)),
+        begin: |extent| Box::new(on_terrain(balanced(false), extent)),
     },
     Setup {
         name: "balanced_2",
         about: "second order, two stages, an inclined plane",
         dimensions: 2,
         dry: true,
-        begin: |extent| Box::new(on_plane::<2>(true, extent)),
+        begin: |extent| Box::new(on_plane::<2, _>(balanced(true), extent)),
     },
     Setup {
         name: "balanced_2_terrain",
         about: "second order, two stages, a bed of varying slope and curvature",
         dimensions: 2,
         dry: true,
-        begin: |extent| Box::new(on_terrain(true, extent)),
+        begin: |extent| Box::new(on_terrain(balanced(true), extent)),
+    },
+    Setup {
+        name: "energy_stable",
+        about: "first order, an inclined plane",
+        dimensions: 2,
+        dry: true,
+        begin: |extent| Box::new(on_plane::<2, _>(energy_stable(), extent)),
+    },
+    Setup {
+        name: "energy_stable_terrain",
+        about: "first order, a bed of varying slope and curvature",
+        dimensions: 2,
+        dry: true,
+        begin: |extent| Box::new(on_terrain(energy_stable(), extent)),
     },
     Setup {
         name: "balanced_1d",
         about: "first order, an inclined plane",
         dimensions: 1,
         dry: true,
-        begin: |extent| Box::new(on_plane::<1>(false, extent)),
+        begin: |extent| Box::new(on_plane::<1, _>(balanced(false), extent)),
     },
     Setup {
         name: "verfahren_1",
@@ -92,16 +108,19 @@ fn cap<const D: usize>(sheet: &Grid<D>, extent: Extent, index: [usize; D]) -> Fl
     Flow { h, q: u.map(|u| h * u) }
 }
 
-fn balanced<B>(second: bool) -> Balanced<Law, B> {
+pub(crate) fn balanced<B>(second: bool) -> Balanced<Law, B> {
     if second { Balanced::second(LAW, FILM) } else { Balanced::first(LAW, FILM) }
 }
 
-pub(crate) fn on_plane<const D: usize>(
-    second: bool,
-    extent: Extent,
-) -> Begun<D, Balanced<Law, Chute<D, f64>>> {
+fn energy_stable<B>() -> EnergyStable<Law, B> {
+    EnergyStable::new(LAW, FILM)
+}
+
+pub(crate) fn on_plane<const D: usize, S>(scheme: S, extent: Extent) -> Begun<D, S>
+where
+    S: Kernel<D, State = Flow<D, f64>, Ground = Chute<D, f64>, Forcing = ()>,
+{
     let sheet = grid::<D>(extent.cells, Boundary::Open);
-    let scheme = balanced(second);
     let start = |index| cap(&sheet, extent, index);
     Begun::new(
         Simulation::new(scheme, sheet, COURANT, |_| plane(), start).expect("a step that the scheme takes"),
@@ -121,7 +140,10 @@ fn as_published(published: Variant, extent: Extent) -> Begun<2, Kinetic> {
     )
 }
 
-pub(crate) fn on_terrain(second: bool, extent: Extent) -> Begun<2, Balanced<Law, ground::Terrain<2, f64>>> {
+pub(crate) fn on_terrain<S>(scheme: S, extent: Extent) -> Begun<2, S>
+where
+    S: Kernel<2, State = Flow<2, f64>, Ground = ground::Terrain<2, f64>, Forcing = ()>,
+{
     let sheet = grid::<2>(extent.cells, Boundary::Absorbing);
     let height = |number: usize| {
         let [x, y] = sheet.centre(sheet.index(number));
@@ -138,7 +160,6 @@ pub(crate) fn on_terrain(second: bool, extent: Extent) -> Begun<2, Balanced<Law,
         crs: None,
     };
     let terrain = Terrain::new(bed, Curvature::Length(3.0 * sheet.size[0]));
-    let scheme = balanced(second);
     let ground = move |cell| super::terrain::ground_at(&terrain, 1.0, cell);
     let start = |index| cap(&sheet, extent, index);
     Begun::new(

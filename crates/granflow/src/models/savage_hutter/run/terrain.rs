@@ -6,13 +6,15 @@ use crate::StartError;
 use crate::model::Plane;
 use crate::run::{Run, Simulated, step_size};
 use granflow_case::RunPlan;
-use granflow_case::terrain::{Extent, Measured, Order, Plan, Release, Thickness};
+use granflow_case::terrain::{Extent, Measured, Plan, Release, TerrainScheme, Thickness};
 use granflow_engine::grid::Grid;
+use granflow_engine::kernels::Kernel;
 use granflow_engine::simulation::Simulation;
 use granflow_geo::raster::{Crs, Raster};
 use granflow_geo::release::{self, Sparse};
 use granflow_geo::terrain::{Curvature, Terrain};
 use granflow_model::savage_hutter::balanced::Balanced;
+use granflow_model::savage_hutter::energy_stable::EnergyStable;
 use granflow_model::savage_hutter::{Flow, ground};
 use granflow_model::scheme::Boundary;
 use std::sync::Arc;
@@ -52,15 +54,50 @@ pub(super) fn simulate(
     };
     let plane = Plane::of(&grid, Arc::new(domain));
     let (law, film) = (plan.material.law, plan.scheme.film);
-    let scheme = match plan.scheme.name {
-        Order::First => Balanced::first(law, film),
-        Order::Second => Balanced::second(law, film),
-    };
+    let ceiling = gravity * ceiling(&terrain, &release);
     let ground = move |cell| ground_at(&terrain, gravity, cell);
     let state = move |[i, j]: [usize; 2]| Flow::still(release.get(j * columns + i));
+    match plan.scheme.name {
+        TerrainScheme::Balanced => begin(run, film, Balanced::first(law, film), (grid, plane), ground, state),
+        TerrainScheme::Balanced2 => {
+            begin(run, film, Balanced::second(law, film), (grid, plane), ground, state)
+        }
+        TerrainScheme::EnergyStable => {
+            let scheme = EnergyStable::new(law, film).below(ceiling);
+            begin(run, film, scheme, (grid, plane), ground, state)
+        }
+    }
+}
+
+/// A run with a scheme.
+fn begin<S>(
+    run: &RunPlan,
+    film: f64,
+    scheme: S,
+    (grid, plane): (Grid<2>, Plane),
+    ground: impl Fn([usize; 2]) -> ground::Terrain<2, f64> + Sync,
+    state: impl Fn([usize; 2]) -> Flow<2, f64> + Sync,
+) -> Result<Box<dyn Run>, StartError>
+where
+    S: Kernel<2, State = Flow<2, f64>, Ground = ground::Terrain<2, f64>, Forcing = ()> + 'static,
+{
     let simulation = Simulation::new(scheme, grid, step_size(run), ground, state)?;
     let physics = Flowing::new(run.scheme, film, true).with_threshold(run.output.threshold);
     Ok(Box::new(Simulated::new(simulation, physics, plane)))
+}
+
+/// The highest total head \[m\] that a mass released at rest can have: its highest surface and its greatest height c^2 H over
+/// the bed, which a front gains.
+fn ceiling(terrain: &Terrain, release: &Sparse) -> f64 {
+    let (mut top, mut deepest) = (f64::NEG_INFINITY, 0.0_f64);
+    for (cell, volume) in release.iter().filter(|(_, volume)| *volume > 0.0) {
+        let [column, row] = terrain.bed.place(cell);
+        let cos = terrain.fit([column, row]).cosine();
+        let depth = cos * cos * volume;
+        top = top.max(terrain.bed.at(column, row) + depth);
+        deepest = deepest.max(depth);
+    }
+    top + deepest
 }
 
 /// The ground of a cell of a mountain under `gravity` \[m/s^2\], by column and row, the first row in the south.

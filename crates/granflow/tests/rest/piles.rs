@@ -1,18 +1,15 @@
 //! Benchmark G: what should rest rests bit for bit, what should start starts, what flows comes to rest by itself.
 
-mod oracle;
-mod support;
-
+use super::support::{
+    GRAVITY, ORDERS, Order, Run, Surface, alone, depths, grid, ground, line, lost, on_plane, plane, run,
+    states, steps, terrain,
+};
+use crate::oracle::published;
 use granflow::kernels::Kernel;
 use granflow::savage_hutter::Flow;
 use granflow::savage_hutter::ground::{Bed, Chute, Terrain};
 use granflow::scheme::Boundary;
 use granflow::simulation::Simulation;
-use oracle::published;
-use support::{
-    GRAVITY, ORDERS, Order, Run, Surface, alone, depths, grid, ground, line, lost, on_plane, plane, run,
-    states, steps, terrain,
-};
 
 const MU: f64 = 0.5;
 const FILM: f64 = 1e-6;
@@ -127,7 +124,7 @@ fn piles_on_planes_rest_at_the_yield_slope_and_start_beyond_it() {
                 }
             }
         }
-        starts("cone on the flat", &mut chute_pile(order, [0.0; 2], Shape::Cone, BEYOND, false));
+        starts("cone on the flat", &mut chute_pile(order, [0.0; 2], Shape::Cone, order.cone_starts(), false));
     }
 }
 
@@ -166,7 +163,8 @@ fn piles_on_terrain_planes_rest_at_the_yield_slope_and_start_beyond_it() {
                 let s = if cone && slope[0] * slope[1] != 0.0 { 0.999 } else { 1.0 };
                 rests(&name, &mut terrain_pile(order, slope, shape, s), 10_000, false);
                 if !cone || slope == [0.0; 2] {
-                    starts(&name, &mut terrain_pile(order, slope, shape, BEYOND));
+                    let beyond = if matches!(shape, Shape::Cone) { order.cone_starts() } else { BEYOND };
+                    starts(&name, &mut terrain_pile(order, slope, shape, beyond));
                 }
             }
         }
@@ -175,7 +173,7 @@ fn piles_on_terrain_planes_rest_at_the_yield_slope_and_start_beyond_it() {
 
 /// Smooth random hills, slopes up to about 0.35.
 fn hills(seed: u64) -> impl Fn([f64; 2]) -> Surface<2> {
-    let mut dice = support::Dice(seed);
+    let mut dice = super::support::Dice(seed);
     let waves: Vec<[f64; 4]> = (0..5)
         .map(|_| {
             let (angle, length) = (dice.between(0.0, 6.3), dice.between(40.0, 160.0));

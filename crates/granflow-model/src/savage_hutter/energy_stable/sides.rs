@@ -1,0 +1,57 @@
+//! The surroundings of a cell along one axis, as forecast.
+
+use super::force::Downstream;
+use super::forecast::Forecast;
+use crate::real::{Real, per_axis};
+use crate::savage_hutter::ground::Bed;
+use crate::scheme::Forecasts;
+
+/// The surroundings of a cell, as forecast, along one axis.
+#[derive(Clone, Copy)]
+pub(super) struct Sides<R: Real> {
+    /// The rises of psi to both neighbours after the gain of either; outside the data the surface goes on as it comes, level if
+    /// from a bare bed above.
+    rises: [R; 2],
+    /// How freely mass passes both faces.
+    pub(super) free: [R; 2],
+    /// The data end at the face.
+    pub(super) ends: R::Mask,
+}
+
+impl<R: Real> Sides<R> {
+    #[inline(always)]
+    pub(super) fn of<const D: usize, B: Bed<D, R>>(
+        axis: usize,
+        forecasts: &Forecasts<D, Forecast<D, R, B::Surface>>,
+    ) -> Self {
+        let (zero, here) = (R::zero(), &forecasts.here);
+        let there = [&forecasts.lo[axis], &forecasts.hi[axis]];
+        let level = [
+            -B::rise(axis, [&there[0].surface, &here.surface]),
+            B::rise(axis, [&here.surface, &there[1].surface]),
+        ];
+        let outside = [there[0].motion.is_outside(), there[1].motion.is_outside()];
+        let rise: [R; 2] = per_axis!(side => {
+            R::select(outside[side], zero, level[side] + (there[side].gain - here.gain))
+        });
+        Sides {
+            rises: per_axis!(side => {
+                let leans = there[1 - side].motion.is_dry() & zero.lt(rise[1 - side]);
+                R::select(outside[side], R::select(leans, zero, -rise[1 - side]), rise[side])
+            }),
+            free: per_axis!(side => here.motion.between(there[side].motion, level[side])),
+            ends: outside[0] | outside[1],
+        }
+    }
+    /// As through the less free of both faces.
+    #[inline(always)]
+    pub(super) fn freedom(&self) -> R {
+        self.free[0].min(self.free[1])
+    }
+    /// The forces for both directions, moved to their mean as far as the cell flows freely.
+    #[inline(always)]
+    pub(super) fn force(&self, per: R) -> Downstream<R> {
+        let Downstream { mean, apart } = Downstream::of(self.rises, per);
+        Downstream { mean, apart: apart * (R::splat(1.0) - self.freedom()) }
+    }
+}

@@ -1,0 +1,142 @@
+//! The pointwise functions of the scheme.
+
+use super::faces::{FaceStatesOf, Flux};
+use super::flux::flux;
+use super::forecast::Forecast;
+use super::variant::EnergyStable;
+use crate::real::{Real, largest, per_axis, total};
+use crate::savage_hutter::friction::Friction;
+use crate::savage_hutter::ground::Bed;
+use crate::savage_hutter::{Flow, normal};
+use crate::scheme::{Cell, Diagnostics, Faces, Forecasts, Scheme, SchemeVisitor, Side, Spacing, Stencil};
+use crate::time::{EULER, Stages};
+
+/// Whatever friction takes, this share of its kinetic energy a cell loses in every step: so the energy falls while anything moves.
+const LOST: f64 = 1e-6;
+
+impl<F: Friction, const D: usize, R: Real, B: Bed<D, R>> Scheme<D, R> for EnergyStable<F, B> {
+    type State = Flow<D, R>;
+    type Ground = B;
+    type Forcing = ();
+    type Primitives = ();
+    type Forecast = Forecast<D, R, B::Surface>;
+    type FaceStates = FaceStatesOf<D, R, B>;
+    type Flux = Flux<D, R>;
+    type Corner = ();
+
+    const REFUSES_LONG_STEPS: bool = true;
+
+    fn stages(&self) -> Stages {
+        EULER
+    }
+    /// 1: beyond, cells would give more than they hold, and what keeps them from it brakes the flow.
+    fn max_courant(&self) -> f64 {
+        1.0
+    }
+
+    fn with_scalar<L: Real, V: SchemeVisitor<D, L>>(&self, visitor: V) -> V::Output {
+        visitor.visit(&self.over::<B::On<L>>())
+    }
+
+    #[inline(always)]
+    fn primitives(&self, _here: &Cell<Flow<D, R>, B>) {}
+    #[inline(always)]
+    fn forecast(&self, stencil: &impl Stencil<D, R, Flow<D, R>, B>, dt: R) -> Self::Forecast {
+        self.foresee(stencil, dt)
+    }
+    #[inline(always)]
+    fn reconstruct(
+        &self,
+        stencil: &impl Stencil<D, R, Flow<D, R>, B>,
+        _: &(),
+        forecasts: &Forecasts<D, Self::Forecast>,
+        dt: R,
+    ) -> Self::FaceStates {
+        self.offer(stencil, forecasts, dt)
+    }
+    #[inline(always)]
+    fn flux(&self, axis: usize, left: &Self::FaceStates, right: &Self::FaceStates, lambda: R) -> Flux<D, R> {
+        flux::<D, R, B>(axis, [left, right], lambda)
+    }
+    #[inline(always)]
+    fn corner(&self, _around: [[&Self::FaceStates; 2]; 2]) {}
+
+    #[inline(always)]
+    fn update(
+        &self,
+        stencil: &impl Stencil<D, R, Flow<D, R>, B>,
+        face_states: &Self::FaceStates,
+        faces: &[Faces<Flux<D, R>>; D],
+        _corners: &[[(); 2]; 2],
+        _dt: R,
+    ) -> Flow<D, R> {
+        let old = stencil.at([0; D]).state;
+        let (zero, half, h) = (R::zero(), R::splat(0.5), old.h);
+        let gone = total::<D, R>(per_axis!(axis => faces[axis].hi.mass - faces[axis].lo.mass));
+        let energy = total::<D, R>(per_axis!(axis => faces[axis].hi.energy[0] - faces[axis].lo.energy[1]));
+        let q: [R; D] = per_axis!(k => {
+            let lost: [R; D] = per_axis!(axis => faces[axis].hi.left[k] - faces[axis].lo.right[k]);
+            h * face_states.w[k] - total(lost)
+        });
+        let left = normal(h - gone);
+        let film = left.lt(R::splat(self.film));
+        let kinetic = h * (half * B::square_in(&face_states.plane, face_states.u));
+        let allowed = ((kinetic - half * face_states.head * (gone * gone)) - energy) * R::splat(1.0 - LOST);
+        // No more than the head that there is.
+        let psi = B::potential(&face_states.surface) - face_states.head * gone;
+        let allowed = allowed.min(left * (R::splat(self.ceiling) - psi).positive_part());
+        // |q|^2/(2 h) <= allowed
+        let (square, most) = (B::square_in(&face_states.plane, q), (left + left) * allowed.positive_part());
+        let over = most.lt(square);
+        let mut keep = R::splat(1.0);
+        if R::any(over) {
+            keep = R::select(over, (most / R::select(over, square, R::splat(1.0))).sqrt(), keep);
+        }
+        let q = per_axis!(k => {
+            let new = R::select(film, zero, q[k] * keep);
+            // A zero keeps its sign, as in a cell that sleeps.
+            R::select(new.equals(old.q[k]), old.q[k], new)
+        });
+        Flow { h: left, q }
+    }
+
+    fn mirror(&self, axis: usize, state: &Flow<D, R>) -> Flow<D, R> {
+        state.mirror(axis)
+    }
+    fn mirror_ground(&self, axis: usize, ground: &B) -> B {
+        ground.mirror(axis)
+    }
+    /// sum over axes of (|u| + sqrt(2 beta h))/dx, and at least sqrt(5 g/dx): no fall from rest takes a tenth of a cell in a step. A
+    /// film never sets the step.
+    #[inline(always)]
+    fn rate(&self, here: &Cell<Flow<D, R>, B>, spacing: &Spacing<D, R>) -> R {
+        let fall = (R::splat(5.0) * here.ground.gravity() * largest(spacing.inv)).sqrt();
+        let rate = here.state.rate(&here.ground, spacing.inv).max(fall);
+        R::select(here.state.h.lt(R::splat(self.film)), R::zero(), rate)
+    }
+    #[inline(always)]
+    fn rk_combine(&self, keep: R, old: &Flow<D, R>, new: &Flow<D, R>) -> Flow<D, R> {
+        let give = R::splat(1.0) - keep;
+        Flow { h: keep * old.h + give * new.h, q: per_axis!(k => keep * old.q[k] + give * new.q[k]) }
+    }
+    /// q = 0: a cell that a step leaves at rest and unchanged, every later step leaves so.
+    #[inline(always)]
+    fn is_static(&self, here: &Cell<Flow<D, R>, B>) -> R::Mask {
+        here.state.is_still() | self.is_dry(here)
+    }
+    #[inline(always)]
+    fn is_nodata(&self, ground: &B) -> R::Mask {
+        ground.is_nodata()
+    }
+    #[inline(always)]
+    fn outflow(&self, flux: &Flux<D, R>, _side: Side, _lambda: R) -> R {
+        flux.mass
+    }
+    fn yield_ratio(&self, stencil: &impl Stencil<D, R, Flow<D, R>, B>) -> R {
+        self.pull_at_rest(stencil)
+    }
+    #[inline(always)]
+    fn diagnostics(&self, here: &Cell<Flow<D, R>, B>) -> Diagnostics<R> {
+        here.state.diagnostics(&here.ground, R::splat(self.film))
+    }
+}
