@@ -29,7 +29,7 @@ fn every_scheme_has_its_row_on_every_number_of_threads() {
         serde_json::from_slice(&std::fs::read(folder.path().join("deep/speed.json")).unwrap()).unwrap();
     assert_eq!([&found["complete"], &found["quick"]], [true; 2]);
     let rows = found["rows"].as_array().unwrap();
-    assert_eq!(rows.len(), 24);
+    assert_eq!(rows.len(), 28);
     let bandwidth = |threads: &Value| {
         let all = found["triad"]["measured"].as_array().unwrap();
         number(&all.iter().find(|one| one["threads"] == *threads).unwrap()["bytes_per_second"])

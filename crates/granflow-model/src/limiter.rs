@@ -26,8 +26,14 @@ pub fn minmod<R: Real>(a: R, b: R) -> R {
 /// 0.5007, with 1 0.5006.
 #[inline(always)]
 pub fn central<R: Real>(lo: R, hi: R) -> R {
+    central_within(1.5, lo, hi)
+}
+
+/// Central slope within `theta` times each one-sided difference: minmod(theta lo, (lo + hi)/2, theta hi), theta from 1 to 2.
+#[inline(always)]
+pub fn central_within<R: Real>(theta: f64, lo: R, hi: R) -> R {
     // Not by `map`: a function in between may stay one, and is then not computed on lanes.
-    let ([rise, fall], factor) = (smaller(lo, hi), R::splat(1.5));
+    let ([rise, fall], factor) = (smaller(lo, hi), R::splat(theta));
     let (rise, fall) = (rise * factor, fall * factor);
     ((lo + hi) * R::splat(0.5)).min(rise).max(fall)
 }

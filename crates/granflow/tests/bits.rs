@@ -13,7 +13,7 @@ const FIELDS: [(&str, [&str; 2], [u32; 2]); 13] = [
     ("constant", FLOW, [0x856d_9764, 0x23ae_e3db]),
     ("inclined_silo", FLOW, [0xa3a3_c359, 0x3f56_0b55]),
     ("parabola", FLOW, [0x2970_08bd, 0x56ee_5715]),
-    ("plane", FLOW, [0x9ec9_e395, 0x5463_988b]),
+    ("plane", FLOW, [0xd239_62de, 0xfe2d_6cb3]),
     ("riemann", FLOW, [0xa57a_6f6f, 0x8dd2_874e]),
     ("silo", FLOW, [0xf320_dd54, 0x436e_fb0c]),
     ("sine", FLOW, [0x7cea_04fd, 0xd784_0f15]),
@@ -21,7 +21,7 @@ const FIELDS: [(&str, [&str; 2], [u32; 2]); 13] = [
     ("sandpile_l", PILE, [0xa164_bde6, 0xc4d4_52dd]),
     ("sandpile_moving", PILE, [0x3d21_10cd, 0x3342_5eca]),
     ("sandpile_source", PILE, [0x07a0_352a, 0x55c3_8d61]),
-    ("sandpile_switched", PILE, [0x175f_ba55, 0x0e64_a2c6]),
+    ("sandpile_switched", PILE, [0x175f_ba55, 0x6941_a1ff]),
     ("silo_hole", PILE, [0x26ef_6c23, 0x36c3_9ab7]),
 ];
 const FLOW: [&str; 2] = ["thickness", "velocity_x"];

@@ -27,6 +27,11 @@ fn laws(dice: &mut Dice) -> Law {
     }
 }
 
+/// Both orders in turn.
+fn of_order<B>(seed: u64, law: Law) -> EnergyStable<Law, B> {
+    if seed.is_multiple_of(2) { EnergyStable::first(law, 1e-6) } else { EnergyStable::second(law, 1e-6) }
+}
+
 /// A run on a random mountain with a random release, moving or at rest.
 fn random(seed: u64) -> (Mountain, Run) {
     let mut dice = Dice(seed ^ 0x5eed);
@@ -53,7 +58,7 @@ fn random(seed: u64) -> (Mountain, Run) {
         .collect();
     let sheet: Grid<2> = grid(cells, [0.0; 2], dx, Boundary::Absorbing);
     let run = Simulation::new(
-        EnergyStable::new(laws(&mut dice), 1e-6),
+        of_order(seed, laws(&mut dice)),
         sheet,
         StepSize::Courant(0.9),
         |index| mountain.ground(index),
@@ -70,8 +75,11 @@ fn random(seed: u64) -> (Mountain, Run) {
 fn the_energy_falls_while_anything_moves_on_random_mountains() {
     let worst = alone(|| {
         let mut worst = f64::NEG_INFINITY;
-        for seed in 0..500 {
+        for seed in 0..1000 {
             let (mountain, mut run) = random(seed);
+            if run.rate() == 0.0 {
+                continue; // all of it lies on holes
+            }
             let lowest = mountain.lowest();
             let mut before: f64 = energy(&run, lowest).iter().sum();
             let range = before;
@@ -112,7 +120,7 @@ where
         let mut dice = Dice(seed ^ 0xc4073);
         let tilt: [f64; D] = std::array::from_fn(|_| dice.between(-0.6, 0.6));
         let ground = plane(tilt, dice.between(0.1, 1.0));
-        let scheme = EnergyStable::new(laws(&mut dice), 1e-6);
+        let scheme = of_order(seed, laws(&mut dice));
         let deep = 10.0_f64.powf(dice.between(-3.0, 0.5));
         let sheet = grid(cells, [0.0; D], dice.between(0.02, 0.5), Boundary::Wall);
         let start = |index: [usize; D]| {
@@ -150,7 +158,7 @@ where
 #[test]
 fn the_energy_falls_while_anything_moves_on_random_chutes() {
     alone(|| {
-        on_chutes([60], 100);
-        on_chutes([24, 18], 60);
+        on_chutes([60], 200);
+        on_chutes([24, 18], 120);
     });
 }

@@ -98,7 +98,7 @@ fn on_planes<const D: usize>(cells: [usize; D], ends: Boundary) {
     let friction = Coulomb { mu: 0.3 };
     compare("balanced", || run(Balanced::first(Law::Coulomb(friction), 1e-6), StepSize::Courant(0.9)));
     compare("energy_stable", || {
-        let scheme = EnergyStable::new(Law::Coulomb(friction), 1e-6);
+        let scheme = EnergyStable::first(Law::Coulomb(friction), 1e-6);
         Simulation::new(
             scheme,
             sheet,
@@ -165,7 +165,7 @@ fn on_terrain(name: &str, friction: Law) {
         });
     }
     compare(name, || {
-        let scheme = EnergyStable::new(friction, 1e-6);
+        let scheme = EnergyStable::first(friction, 1e-6);
         Simulation::new(scheme, sheet, StepSize::Courant(0.9), |index| grounds[number(index)], begin).unwrap()
     });
 }

@@ -6,17 +6,17 @@ mod tried;
 
 use granflow::savage_hutter::Flow;
 use granflow::savage_hutter::energy_stable::EnergyStable;
-use granflow::savage_hutter::friction::{Coulomb, Law};
+use granflow::savage_hutter::friction::Law;
 use granflow::savage_hutter::ground::{Bed, Terrain};
 use granflow::scheme::Boundary;
-use granflow::simulation::{Simulation, StepSize};
+use granflow::simulation::Simulation;
 use support::mountain::{Mountain, Roughness, energy};
-use support::{Dice, GRAVITY, alone, grid};
+use support::{Dice, GRAVITY, ORDERS, Order, alone, grid};
 
 type Run = Simulation<2, EnergyStable<Law, Terrain<2, f64>>>;
 
 /// A rough mountain of 1200 m x 700 m and a release of some metres high up.
-fn release(seed: u64, cell: f64, mu: f64, curved: bool) -> (Mountain, Run) {
+fn release(seed: u64, order: Order, cell: f64, mu: f64, curved: bool) -> (Mountain, Run) {
     let mut dice = Dice(seed ^ 0x5eed);
     let cells = [1200.0, 700.0].map(|length| (length / cell) as usize);
     let rough = Roughness {
@@ -37,12 +37,11 @@ fn release(seed: u64, cell: f64, mu: f64, curved: bool) -> (Mountain, Run) {
         let ground = mountain.ground(index);
         if curved { ground } else { Terrain { curvature: [[0.0; 2]; 2], ..ground } }
     };
-    let scheme = EnergyStable::new(Law::Coulomb(Coulomb { mu }), 1e-4);
-    let [deepest, highest] =
-        heads(&Simulation::new(scheme, sheet, StepSize::Courant(0.9), ground, start).unwrap());
+    let scheme = order.scheme(mu, 1e-4);
+    let [deepest, highest] = heads(&Simulation::new(scheme, sheet, order.courant(), ground, start).unwrap());
     // A front gains the depth behind it: V^2/(2 g) = 2 h, not h (Ritter 1892).
     let scheme = scheme.below(GRAVITY * (highest + deepest));
-    let run = Simulation::new(scheme, sheet, StepSize::Courant(0.9), ground, start).unwrap();
+    let run = Simulation::new(scheme, sheet, order.courant(), ground, start).unwrap();
     (mountain, run)
 }
 
@@ -91,7 +90,13 @@ fn comes_to_rest(name: &str, (mountain, mut run): (Mountain, Run)) -> Option<f64
     Some(run.time())
 }
 
-/// Every mountain, friction, cell and curvature; a sample unless the environment asks for all.
+/// Both orders, three frictions, curvature in the friction or not.
+fn settings() -> impl Iterator<Item = (Order, f64, bool)> {
+    let all = |order| [0.3, 0.4, 0.5].into_iter().flat_map(move |mu| [(order, mu, true), (order, mu, false)]);
+    ORDERS.into_iter().flat_map(all)
+}
+
+/// Every mountain, order, friction, cell and curvature; a sample unless the environment asks for all.
 #[test]
 fn every_mountain_comes_to_rest() {
     let all = std::env::var_os("GRANFLOW_ALL_MOUNTAINS").is_some();
@@ -100,13 +105,12 @@ fn every_mountain_comes_to_rest() {
     alone(|| {
         for seed in 0..mountains {
             for &cell in cells {
-                for mu in [0.3, 0.4, 0.5] {
-                    for curved in [true, false] {
-                        let name = format!("mountain {seed}, cells of {cell} m, mu {mu}, curved {curved}");
-                        match comes_to_rest(&name, release(seed, cell, mu, curved)) {
-                            Some(time) => times.push(time),
-                            None => moving.push(name),
-                        }
+                for (order, mu, curved) in settings() {
+                    let name =
+                        format!("{order:?}, mountain {seed}, cells of {cell} m, mu {mu}, curved {curved}");
+                    match comes_to_rest(&name, release(seed, order, cell, mu, curved)) {
+                        Some(time) => times.push(time),
+                        None => moving.push(name),
                     }
                 }
             }

@@ -304,3 +304,16 @@ fn a_builder_refuses_what_a_case_refuses() {
         assert!(error.contains(part), "{error}");
     }
 }
+
+/// A frame may be due a rounding of the step, but not of its own interval, after a step's end.
+#[test]
+fn a_frame_due_a_rounding_after_a_step_is_shown_once() {
+    let text = format!("{FIXED}\noutput.every = 0.0010000000000005\n");
+    let case = Case::parse(&text, "test.toml").unwrap().check().unwrap();
+    let plan = case.plan().clone();
+    let mut run = case.start().unwrap();
+    let mut memory = Memory::begin(&mut *run, plan.output.frames, &["thickness"]);
+    drive(&mut *run, &plan.ends, &mut [&mut memory]).unwrap();
+    let times = memory.finish(&mut *run).times;
+    assert!(times.windows(2).all(|pair| pair[0] < pair[1]), "{times:?}");
+}

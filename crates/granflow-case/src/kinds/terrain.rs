@@ -51,6 +51,8 @@ pub struct Plan {
 pub enum TerrainScheme {
     /// energy_stable.
     EnergyStable,
+    /// energy_stable_2.
+    EnergyStable2,
     /// balanced.
     Balanced,
     /// balanced_2.
@@ -174,6 +176,7 @@ impl OnTerrain {
 fn on_terrain(look: &Look, scheme: SchemeName) -> Result<TerrainScheme, CaseError> {
     match scheme {
         SchemeName::EnergyStable => Ok(TerrainScheme::EnergyStable),
+        SchemeName::EnergyStable2 => Ok(TerrainScheme::EnergyStable2),
         SchemeName::Balanced => Ok(TerrainScheme::Balanced),
         SchemeName::Balanced2 => Ok(TerrainScheme::Balanced2),
         SchemeName::Verfahren1

@@ -484,7 +484,7 @@ fn an_avalanche_has_no_table() {
     assert!(
         silo("scheme.name=adaptive")
             .to_string()
-            .contains("allowed: energy_stable, balanced, balanced_2, verfahren_1")
+            .contains("allowed: energy_stable, energy_stable_2, balanced")
     );
     assert!(silo("time.until=steady").to_string().contains("write until = \"rest\""));
     assert!(silo("initial={}").to_string().contains("`thickness` is missing"));

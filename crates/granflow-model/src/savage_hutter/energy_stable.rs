@@ -10,21 +10,25 @@
 //! 3. **The limiter**: beside mass and momentum a face carries a flux of energy; the new momentum of a cell is scaled down where the
 //!    cell would keep more energy than this leaves it. Faces carry no more than can be paid, so that the scale is almost always 1.
 //!
-//! The sum of E over the cells never grows, and falls while anything moves, whatever the bed, the step and the law: the proof and what it costs are in `docs/rest.md`.
+//! The sum of E over the cells never grows, and falls while anything moves, whatever the step and the law, on any
+//! terrain and on straight chutes: the proof and what it costs are in `docs/rest.md`.
 
 mod budget;
+mod ends;
 mod faces;
 mod flux;
 mod force;
 mod forecast;
 mod friction;
 mod limiter;
+mod meeting;
 mod reconstruct;
 mod rest;
 mod sides;
 mod steps;
 mod variant;
 
+pub use ends::{Ends, EndsOf, EndsStorage};
 pub use faces::{FaceStates, Flux};
 pub use forecast::Forecast;
 pub use variant::EnergyStable;

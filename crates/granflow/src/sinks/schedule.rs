@@ -47,9 +47,10 @@ impl Schedule {
     pub fn resume(&mut self, [frame, line]: [f64; 2]) {
         (self.next_frame, self.next_line) = (frame, line);
     }
-    /// Find the frame and the line after the present time.
+    /// Find the frame and the line after the present time, and after the frame that is shown now: that may be due a rounding later.
     pub fn plan(&mut self, run: &dyn Run) {
-        let time = run.time();
+        let due = if self.next_frame.is_finite() { self.next_frame } else { f64::NEG_INFINITY };
+        let time = run.time().max(due);
         if let Some(interval) = self.interval() {
             self.next_frame = after(time, interval);
             self.next_line = after(time, interval / LINES);

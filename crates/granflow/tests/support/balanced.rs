@@ -60,6 +60,10 @@ impl Order {
     pub fn ends_early(self) -> bool {
         self == Order::Second
     }
+    /// The largest total variation of the published Riemann problem (exact 0.5).
+    pub fn variation(self) -> f64 {
+        0.502
+    }
     /// The step of an ordinary run.
     pub fn courant(self) -> StepSize {
         match self {

@@ -1,5 +1,6 @@
 //! What a cell can give in a step, and what it can pay for.
 
+use super::ends::EndsOf;
 use super::faces::FaceStatesOf;
 use super::sides::Sides;
 use crate::real::{Real, for_axis, per_axis, total};
@@ -9,7 +10,7 @@ use crate::scheme::Neighbours;
 
 /// A cell gives at most this share of what it holds in a step, and what spreads at most this share of the rest through a face.
 const GIVES: f64 = 0.98;
-const SPREADS: f64 = 0.24;
+const SPREADS_OF_REST: f64 = 0.24;
 
 /// What a cell gives.
 pub(super) struct Gives<const D: usize, R: Real> {
@@ -22,7 +23,11 @@ pub(super) struct Gives<const D: usize, R: Real> {
 impl<const D: usize, R: Real> Gives<D, R> {
     /// All offers scaled to what the cell has.
     #[inline(always)]
-    pub(super) fn offers<B: Bed<D, R>>(&self, sides: &[Sides<R>; D], offer: &mut FaceStatesOf<D, R, B>) {
+    pub(super) fn offers<B: Bed<D, R>, T: EndsOf<D, R>>(
+        &self,
+        sides: &[Sides<R>; D],
+        offer: &mut FaceStatesOf<D, R, B, T>,
+    ) {
         let (zero, one, h) = (R::zero(), R::splat(1.0), offer.h.positive_part());
         offer.wave = (offer.head * h).sqrt();
         let all: [R; D] = per_axis!(axis => {
@@ -38,19 +43,19 @@ impl<const D: usize, R: Real> Gives<D, R> {
         if R::any(more) {
             offer.share = R::select(more, most / R::select(more, all, one), one);
         }
-        offer.room = (h - all.min(most)) * R::splat(SPREADS);
+        offer.room = (h - all.min(most)) * R::splat(SPREADS_OF_REST);
     }
 
     /// What it can pay for: the kinetic energy of what stays, on which the predicted inflow draws.
     #[inline(always)]
-    pub(super) fn budget<B: Bed<D, R>>(
+    pub(super) fn budget<B: Bed<D, R>, T: EndsOf<D, R>>(
         &self,
         near: &Neighbours<D, R, Flow<D, R>, B>,
         sides: &[Sides<R>; D],
-        offer: &mut FaceStatesOf<D, R, B>,
+        offer: &mut FaceStatesOf<D, R, B, T>,
     ) {
         let (zero, one, half) = (R::zero(), R::splat(1.0), R::splat(0.5));
-        let stays = offer.room * R::splat(1.0 / SPREADS);
+        let stays = offer.room * R::splat(1.0 / SPREADS_OF_REST);
         offer.budget = stays * (half * B::square_in(&offer.plane, offer.u));
         let mut pays = zero.lt(offer.motion.freedom()) & zero.lt(offer.budget);
         for_axis!(axis in D => {

@@ -1,5 +1,6 @@
 //! What a cell offers to its faces, and what passes one.
 
+use super::ends::EndsOf;
 use super::forecast::Motion;
 use crate::real::Real;
 use crate::savage_hutter::ground::Bed;
@@ -7,7 +8,7 @@ use crate::scheme::{Components, components};
 
 /// What a cell offers to its faces. Masses are per cell area and step, energies per density besides.
 #[derive(Clone, Copy, Debug)]
-pub struct FaceStates<const D: usize, R: Real, P, S> {
+pub struct FaceStates<const D: usize, R: Real, P, S, T> {
     pub(super) h: R,
     /// The surface as it is, how much psi will rise, and psi' = d psi/dh.
     pub(super) surface: S,
@@ -33,16 +34,18 @@ pub struct FaceStates<const D: usize, R: Real, P, S> {
     pub(super) inflow_share: R,
     /// How much psi may fall to a neighbour along an axis without anything sliding, per sqrt(1 + slope^2) of the bed.
     pub(super) holds: [R; D],
+    /// How it varies from end to end.
+    pub(super) ends: T,
 }
 
-components!([const D: usize, R: Real, P: Components<R>, S: Components<R>] FaceStates<D, R, P, S> {
+components!([const D: usize, R: Real, P: Components<R>, S: Components<R>, T: Components<R>] FaceStates<D, R, P, S, T> {
     h: R, surface: S, gain: R, head: R, plane: P, motion: Motion<R>, u: [R; D], w: [R; D], free: [R; D], wave: R, per_head: R,
-    share: R, room: R, budget: R, inflow: R, inflow_share: R, holds: [R; D]
+    share: R, room: R, budget: R, inflow: R, inflow_share: R, holds: [R; D], ends: T
 });
 
 /// Those over a bed.
-pub(super) type FaceStatesOf<const D: usize, R, B> =
-    FaceStates<D, R, <B as Bed<D, R>>::Plane, <B as Bed<D, R>>::Surface>;
+pub(super) type FaceStatesOf<const D: usize, R, B, T> =
+    FaceStates<D, R, <B as Bed<D, R>>::Plane, <B as Bed<D, R>>::Surface, T>;
 
 /// What passes a face in a step, per cell area.
 #[derive(Clone, Copy, Debug)]
@@ -63,5 +66,50 @@ impl<const D: usize, R: Real> Flux<D, R> {
     pub(super) fn none() -> Self {
         let zero = R::zero();
         Flux { mass: zero, left: [zero; D], right: [zero; D], energy: [zero; 2] }
+    }
+}
+
+/// The thermal part of the density sends out at most this share of h sqrt(psi' h): sqrt(3/2)/4, with room for what psi' differs by
+/// between the two cells.
+const LARGEST_HALF: f64 = 0.33;
+
+/// The thermal part is weakened by this share of lambda sqrt(psi' h), for that much is in the time-centring of the velocity; never
+/// below the other share.
+const WEAKENED: f64 = 0.5;
+const THERMAL: f64 = 0.25;
+
+impl<const D: usize, R: Real, P: Copy, S: Copy, T: EndsOf<D, R>> FaceStates<D, R, P, S, T> {
+    /// The velocity of transport, the mean of those before and after force and friction.
+    #[inline(always)]
+    pub(super) fn mean_velocity(&self, axis: usize) -> R {
+        (self.u[axis] + self.w[axis]) * R::splat(0.5)
+    }
+    /// The share of the thermal part that time-centring leaves.
+    #[inline(always)]
+    pub(super) fn thermal(&self, lambda: R) -> R {
+        (R::splat(1.0) - R::splat(WEAKENED) * lambda * self.wave).max(R::splat(THERMAL))
+    }
+    /// The mass per time that is carried through a face, if the velocity after force and friction leads out too.
+    #[inline(always)]
+    pub(super) fn donor(&self, axis: usize, side: usize) -> R {
+        let (v, w) = (self.mean_velocity(axis), self.w[axis]);
+        let v = R::select(R::zero().lt(v * w), v, R::zero());
+        self.h * (if side == 0 { -v } else { v }).positive_part()
+    }
+    /// The largest mass per time that the density sends through a face, before all are scaled to what there is.
+    #[inline(always)]
+    pub(super) fn bound(&self, axis: usize, side: usize, lambda: R) -> R {
+        let v = self.mean_velocity(axis);
+        let out = (if side == 0 { -v } else { v }).positive_part();
+        let spray = self.wave * R::splat(LARGEST_HALF);
+        let bound = self.h * (out + self.thermal(lambda) * spray);
+        let Some(ends) = self.ends.get() else { return bound };
+        let v = ends.speed(axis, side);
+        let out = (if side == 0 { -v } else { v }).positive_part();
+        // sqrt(psi' h) at an end that is deeper, by at most twice.
+        let depth = ends.depth(axis, side, self.h);
+        let at_end = R::select(self.h.lt(depth), spray * R::splat(core::f64::consts::SQRT_2), spray);
+        let at_end = depth * (out + at_end);
+        R::select(R::zero().lt(ends.smooth[axis]), bound.max(at_end), bound)
     }
 }

@@ -1,51 +1,17 @@
 //! What passes a face.
 
-use super::faces::{FaceStates, FaceStatesOf, Flux};
+use super::ends::EndsOf;
+use super::faces::{FaceStatesOf, Flux};
 use super::limiter::Exchange;
+use super::meeting::Meeting;
 use super::rest::TOWER;
 use crate::real::{Real, for_axis, per_axis};
 use crate::savage_hutter::ground::Bed;
 
-/// The thermal part of the density sends out at most this share of h sqrt(psi' h): sqrt(3/2)/4, with room for what psi' differs by
-/// between the two cells.
-const LARGEST_HALF: f64 = 0.33;
-
-/// The thermal part is weakened by this share of lambda sqrt(psi' h), for that much is in the time-centring of the velocity; never
-/// below the other share.
-const WEAKENED: f64 = 0.5;
-const THERMAL: f64 = 0.25;
-
 /// What stands too steep spreads at this share of sqrt(psi' h) less the speed of the flow, and in a step by at most the other share
 /// of its excess: so much the fall of the excess pays for.
 const SPREAD_SPEED: f64 = 0.125;
-const SPREADS: f64 = 1.0 / 24.0;
-
-impl<const D: usize, R: Real, P: Copy, S: Copy> FaceStates<D, R, P, S> {
-    /// The velocity of transport, the mean of those before and after force and friction.
-    #[inline(always)]
-    fn mean_velocity(&self, axis: usize) -> R {
-        (self.u[axis] + self.w[axis]) * R::splat(0.5)
-    }
-    /// The share of the thermal part that time-centring leaves.
-    #[inline(always)]
-    fn thermal(&self, lambda: R) -> R {
-        (R::splat(1.0) - R::splat(WEAKENED) * lambda * self.wave).max(R::splat(THERMAL))
-    }
-    /// The mass per time that is carried through a face, if the velocity after force and friction leads out too.
-    #[inline(always)]
-    pub(super) fn donor(&self, axis: usize, side: usize) -> R {
-        let (v, w) = (self.mean_velocity(axis), self.w[axis]);
-        let v = R::select(R::zero().lt(v * w), v, R::zero());
-        self.h * (if side == 0 { -v } else { v }).positive_part()
-    }
-    /// The largest mass per time that the density sends through a face, before all are scaled to what there is.
-    #[inline(always)]
-    pub(super) fn bound(&self, axis: usize, side: usize, lambda: R) -> R {
-        let v = self.mean_velocity(axis);
-        let out = (if side == 0 { -v } else { v }).positive_part();
-        self.h * (out + self.thermal(lambda) * self.wave * R::splat(LARGEST_HALF))
-    }
-}
+const SPREADS_OF_EXCESS: f64 = 1.0 / 24.0;
 
 /// The exchange by a kinetic flux.
 struct Kinetic<R> {
@@ -68,18 +34,19 @@ fn mean<R: Real>(dry: [R::Mask; 2], [left, right]: [R; 2]) -> R {
 /// Both cells have the faster one's c and the mean psi'. What is no mean flow lives on the depths that both cells have in common, the
 /// deeper one lowered to the other and what its surface is above: nothing passes where the surface is level.
 #[inline(always)]
-fn kinetic<const D: usize, R: Real, B: Bed<D, R>>(
+fn kinetic<const D: usize, R: Real, B: Bed<D, R>, T: EndsOf<D, R>>(
     axis: usize,
-    sides: [&FaceStatesOf<D, R, B>; 2],
+    sides: [&FaceStatesOf<D, R, B, T>; 2],
+    meeting: &Meeting<D, R>,
     dry: [R::Mask; 2],
-    rise: R,
     lambda: R,
 ) -> Kinetic<R> {
     let (zero, one) = (R::zero(), R::splat(1.0));
     let head = mean(dry, [sides[0].head, sides[1].head]);
     let per_head = mean(dry, [sides[0].per_head, sides[1].per_head]);
-    let thermal = mean(dry, [sides[0].thermal(lambda), sides[1].thermal(lambda)]);
-    let h: [R; 2] = per_axis!(side => R::select(dry[side], zero, sides[side].h.positive_part()));
+    let thermal = mean(dry, meeting.thermal);
+    let h: [R; 2] = per_axis!(side => R::select(dry[side], zero, meeting.h[side]));
+    let (v, rise) = (meeting.v, meeting.rise);
     let deeper = h[0] - h[1];
     let left_deeper = zero.lt(deeper);
     let above = R::select(left_deeper, -rise, rise) * per_head;
@@ -88,8 +55,7 @@ fn kinetic<const D: usize, R: Real, B: Bed<D, R>>(
     let lowers = above.lt(deeper.abs() * R::splat(1.0 - 1e-10));
     let common =
         [R::select(left_deeper & lowers, lowered, h[0]), R::select(!left_deeper & lowers, lowered, h[1])];
-    let v = [sides[0].mean_velocity(axis), -sides[1].mean_velocity(axis)];
-    let c = R::splat(1.224744871391589) * sides[0].wave.max(sides[1].wave);
+    let c = R::splat(1.224744871391589) * meeting.wave;
     let none = c.le(zero);
     let per = one / R::select(none, one, c);
     let a: [R; 2] = per_axis!(side => (v[side] * per).max(-one).min(one));
@@ -110,9 +76,9 @@ fn kinetic<const D: usize, R: Real, B: Bed<D, R>>(
 
 /// What the higher one of two cells lets go of, where it moves or is a tower, if it stands steeper than it holds: mass per cell area.
 #[inline(always)]
-fn spread<const D: usize, R: Real, B: Bed<D, R>>(
+fn spread<const D: usize, R: Real, B: Bed<D, R>, T: EndsOf<D, R>>(
     axis: usize,
-    giver: &FaceStatesOf<D, R, B>,
+    giver: &FaceStatesOf<D, R, B, T>,
     fall: R,
     per_head: R,
     lambda: R,
@@ -130,15 +96,15 @@ fn spread<const D: usize, R: Real, B: Bed<D, R>>(
     let onset = R::select(giver.motion.is_tower(), holds * R::splat(TOWER), holds);
     let excess = R::select(lets_go & onset.lt(fall), (fall - holds) * per_head, zero);
     let speed = R::splat(SPREAD_SPEED) * (giver.wave - giver.w[axis].abs()).positive_part();
-    let most = giver.room.min(excess * R::splat(SPREADS));
+    let most = giver.room.min(excess * R::splat(SPREADS_OF_EXCESS));
     (lambda * speed * excess.min(giver.h)).min(most)
 }
 
 /// What passes a face along `axis`.
 #[inline(always)]
-pub(super) fn flux<const D: usize, R: Real, B: Bed<D, R>>(
+pub(super) fn flux<const D: usize, R: Real, B: Bed<D, R>, T: EndsOf<D, R>>(
     axis: usize,
-    sides: [&FaceStatesOf<D, R, B>; 2],
+    sides: [&FaceStatesOf<D, R, B, T>; 2],
     lambda: R,
 ) -> Flux<D, R> {
     let [left, right] = sides;
@@ -150,10 +116,11 @@ pub(super) fn flux<const D: usize, R: Real, B: Bed<D, R>>(
     let outside = left.motion.is_outside() | right.motion.is_outside();
     let rise = R::select(outside, zero, B::rise(axis, [&left.surface, &right.surface]));
     let free = left.motion.between(right.motion, rise);
+    let meeting = Meeting::of::<B, T>(axis, sides, rise, lambda);
     let mut mass: [R; 2] = per_axis!(side => sides[side].donor(axis, 1 - side));
     let mut push = zero;
     if R::any(zero.lt(free)) {
-        let kinetic = kinetic::<D, R, B>(axis, sides, closed, rise, lambda);
+        let kinetic = kinetic::<D, R, B, T>(axis, sides, &meeting, closed, lambda);
         mass = per_axis!(side => mass[side] + free * (kinetic.mass[side] - mass[side]));
         push = lambda * free * kinetic.push;
     }
@@ -163,16 +130,15 @@ pub(super) fn flux<const D: usize, R: Real, B: Bed<D, R>>(
         let per_head = left.per_head.min(right.per_head);
         let within = R::select(outside, zero, one - free);
         let falls = [-rise, rise];
-        spreads =
-            per_axis!(side => within * spread::<D, R, B>(axis, sides[side], falls[side], per_head, lambda));
+        spreads = per_axis!(side => within * spread::<D, R, B, T>(axis, sides[side], falls[side], per_head, lambda));
     }
-    let exchange = Exchange { axis, lambda, rise, closed, mass, spreads, push };
-    let limited = exchange.limited::<D, B>(sides);
+    let exchange = Exchange { axis, lambda, rise, closed, mass, spreads, push, meeting };
+    let limited = exchange.limited::<B, T>(sides);
     if !R::any(outside) {
         return limited;
     }
     // Nothing but what leaves, with at least the potential energy of the bed.
-    let all = exchange.unlimited::<D, B>(sides);
+    let all = exchange.unlimited::<B, T>(sides);
     let mut flux = limited;
     flux.mass = R::select(outside, all.mass, flux.mass);
     for_axis!(k in D => {

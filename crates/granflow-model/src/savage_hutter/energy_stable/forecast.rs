@@ -79,7 +79,7 @@ pub struct Forecast<const D: usize, R: Real, S> {
 
 components!([const D: usize, R: Real, S: Components<R>] Forecast<D, R, S> { u: [R; D], surface: S, gain: R, motion: Motion<R> });
 
-impl<F: Friction, B: Copy> EnergyStable<F, B> {
+impl<F: Friction, B: Copy, const ORDER: u8> EnergyStable<F, B, ORDER> {
     #[inline(always)]
     pub(super) fn is_dry<const D: usize, R: Real>(
         &self,
@@ -93,8 +93,7 @@ impl<F: Friction, B: Copy> EnergyStable<F, B> {
 
     /// [`crate::scheme::Scheme::forecast`].
     ///
-    /// gain = psi' (1 - theta) sum over axes of lambda (q+ of the lower neighbour + q- of the upper one - |q|), at least -h/2 for the
-    /// sum: a downstream force from the old surface makes energy where that is level over a moving layer (E grows by psi' dh^2/2, at
+    /// gain = psi' (1 - theta) sum over axes of lambda (q+ of the lower neighbour + q- of the upper one - |q|), and at least -psi' h/2: a downstream force from the old surface makes energy where that is level over a moving layer (E grows by psi' dh^2/2, at
     /// second order in dt); from the predicted one it does not.
     #[inline(always)]
     pub(super) fn foresee<const D: usize, R: Real>(

@@ -5,7 +5,10 @@ use crate::real::{Real, largest, per_axis};
 use crate::savage_hutter::friction::{Friction, Resistance};
 use crate::savage_hutter::ground::Bed;
 
-impl<F: Friction, B> EnergyStable<F, B> {
+/// What friction leaves of a velocity is rounding below this share of what it takes.
+const ROUNDING: f64 = 1e-12;
+
+impl<F: Friction, B, const ORDER: u8> EnergyStable<F, B, ORDER> {
     /// A pull this much above the static bound still counts as held.
     const SLACK: f64 = 1.0 + 1e-10;
 
@@ -27,14 +30,15 @@ impl<F: Friction, B> EnergyStable<F, B> {
         Resistance { holding: law.holding * R::splat(Self::SLACK) + bed.rounding(h, largest(per)), ..law }
     }
 
-    /// What friction leaves of `pushed`; exactly 0 where it stops the cell, where it leaves no more than an acceleration `idle`, and
-    /// where the rest would not move it by the last place of a cell's size in this step.
+    /// What friction leaves of `pushed`; exactly 0 where it stops the cell, or leaves no more than an acceleration `idle` or than its
+    /// own rounding. Where the flow is smooth it acts along the
+    /// velocity at mid time, `pushed` + x `ahead`, x falling to 0 where it takes half of the speed.
     #[inline(always)]
     pub(super) fn slowed<const D: usize, R: Real>(
         plane: &B::Plane,
         [dry, drag, idle]: [R; 3],
         pushed: [R; D],
-        lambda: [R; D],
+        ahead: Option<(R::Mask, [R; D])>,
         dt: R,
     ) -> [R; D]
     where
@@ -42,14 +46,28 @@ impl<F: Friction, B> EnergyStable<F, B> {
     {
         let (zero, one) = (R::zero(), R::splat(1.0));
         let size = B::square_in(plane, pushed).sqrt();
-        let left = size - dt * dry;
-        let stops = left.le(dt * idle) | (left * largest(lambda)).lt(R::splat(1e-15));
-        let mut keep = left / R::select(stops, one, size);
+        let loss = dt * dry;
+        let left = size - loss;
+        let stops = left.le(dt * idle.max(dry * R::splat(ROUNDING)));
+        let per = one / R::select(stops, one, size);
+        let mut slowed: [R; D] = per_axis!(k => pushed[k] * (left * per));
+        if let Some((smooth, ahead)) = ahead
+            && R::any(smooth)
+        {
+            let x = (one - (loss + loss) * per).positive_part();
+            let along: [R; D] = per_axis!(k => pushed[k] + x * ahead[k]);
+            let length = B::square_in(plane, along).sqrt();
+            let none = length.le(zero);
+            let share = loss / R::select(none, one, length);
+            let turns = smooth & !none;
+            slowed = per_axis!(k => R::select(turns, pushed[k] - share * along[k], slowed[k]));
+        }
+        let mut keep = one;
         if R::any(!drag.equals(zero)) {
             // v + dt drag v^2 = left, solved for v: the part that grows with the square, implicitly.
             let z = R::select(stops, zero, dt * drag * left);
-            keep = keep * (R::splat(2.0) / (one + (one + R::splat(4.0) * z).sqrt()));
+            keep = R::splat(2.0) / (one + (one + R::splat(4.0) * z).sqrt());
         }
-        per_axis!(k => R::select(stops, zero, pushed[k] * keep))
+        per_axis!(k => R::select(stops, zero, slowed[k] * keep))
     }
 }

@@ -1,6 +1,7 @@
 //! Force and friction in a cell, and what it then offers to its faces.
 
 use super::budget::Gives;
+use super::ends::{EndsOf, EndsStorage, Slopes};
 use super::faces::{FaceStates, FaceStatesOf};
 use super::force::{Downstream, UNRESOLVED, centred, pushed};
 use super::forecast::{Forecast, Motion};
@@ -8,6 +9,7 @@ use super::sides::Sides;
 use super::variant::EnergyStable;
 use crate::real::{Real, for_axis, per_axis};
 use crate::savage_hutter::Flow;
+use crate::savage_hutter::balanced::Order;
 use crate::savage_hutter::friction::{Friction, Resistance};
 use crate::savage_hutter::ground::Bed;
 use crate::scheme::{Cell, Forecasts, Spacing, Stencil};
@@ -24,10 +26,10 @@ fn is_zero<const D: usize, R: Real>(w: [R; D]) -> R::Mask {
 
 /// What a cell that gives nothing offers.
 #[inline(always)]
-pub(super) fn closed<const D: usize, R: Real, B: Bed<D, R>>(
+fn closed<const D: usize, R: Real, B: Bed<D, R>, T: EndsOf<D, R>>(
     Cell { state, ground, .. }: &Cell<Flow<D, R>, B>,
     forecast: &Forecast<D, R, B::Surface>,
-) -> FaceStatesOf<D, R, B> {
+) -> FaceStatesOf<D, R, B, T> {
     let (zero, one) = (R::zero(), R::splat(1.0));
     FaceStates {
         h: state.h,
@@ -47,10 +49,23 @@ pub(super) fn closed<const D: usize, R: Real, B: Bed<D, R>>(
         inflow: zero,
         inflow_share: zero,
         holds: [zero; D],
+        ends: T::none(),
     }
 }
 
-impl<F: Friction, B: Copy> EnergyStable<F, B> {
+impl<F: Friction, B: Copy, const ORDER: u8> EnergyStable<F, B, ORDER>
+where
+    Order<ORDER>: EndsStorage,
+{
+    /// Is it of second order?
+    #[inline(always)]
+    pub(super) fn is_second(&self) -> bool {
+        match Order::<ORDER>::LIMITED {
+            Some(limited) => limited,
+            None => self.second,
+        }
+    }
+
     /// [`crate::scheme::Scheme::reconstruct`].
     #[inline(always)]
     pub(super) fn offer<const D: usize, R: Real>(
@@ -58,33 +73,50 @@ impl<F: Friction, B: Copy> EnergyStable<F, B> {
         stencil: &impl Stencil<D, R, Flow<D, R>, B>,
         forecasts: &Forecasts<D, Forecast<D, R, B::Surface>>,
         dt: R,
-    ) -> FaceStatesOf<D, R, B>
+    ) -> FaceStatesOf<D, R, B, EndsIn<D, R, ORDER>>
     where
         B: Bed<D, R>,
     {
         let near = stencil.star();
         let here = Cell { ground: near.here.ground.exact(), ..near.here };
-        let mut offer = closed(&here, &forecasts.here);
+        let mut offer: FaceStatesOf<D, R, B, EndsIn<D, R, ORDER>> = closed(&here, &forecasts.here);
         let shut = offer.motion.is_closed();
         if !R::any(!shut) {
             return offer;
         }
         let zero = R::zero();
         let (bed, h, per) = (here.ground, here.state.h, near.spacing.inv);
+        let lambda: [R; D] = per_axis!(k => dt * per[k]);
         let law = self.resistance(&bed, h, offer.u, per);
         let sides: [Sides<R>; D] = per_axis!(axis => Sides::of::<D, B>(axis, forecasts));
-        let w = self.accelerated(&here, &offer, &law, sides, &near.spacing, dt);
+        let mut slopes = None;
+        if self.is_second() {
+            let there = per_axis!(k => [forecasts.lo[k].u, forecasts.hi[k].u]);
+            slopes = Some(Slopes::of::<B>(&near, &sides, (offer.u, there), lambda));
+        }
+        let w = self.accelerated(
+            &here,
+            (&offer.plane, offer.u, offer.motion),
+            &law,
+            (sides, slopes.as_ref()),
+            &near.spacing,
+            dt,
+        );
         offer.w = per_axis!(k => R::select(shut, zero, w[k]));
         offer.free = per_axis!(k => sides[k].freedom());
         offer.holds = per_axis!(k => law.holding * near.spacing.size[k]);
         // What friction stops gives nothing; what nothing resists still gives its thermal part.
         let stops = is_zero(offer.w) & zero.lt(law.dry) & !shut;
+        if let Some(slopes) = &slopes {
+            offer.ends =
+                EndsOf::of(slopes.with::<B>(&near, &offer.plane, [offer.u, offer.w], stops | shut, dt));
+        }
         let code = offer.motion.code;
-        let lets_go = offer.motion.is_tower();
-        offer.motion = Motion { code: R::select(stops & !lets_go, R::splat(Motion::<R>::STOPS), code) };
-        let gives = Gives { lambda: per_axis!(k => dt * per[k]), flows: !(stops | shut) };
-        gives.offers::<B>(&sides, &mut offer);
-        gives.budget::<B>(&near, &sides, &mut offer);
+        let stopped = stops & !offer.motion.is_tower();
+        offer.motion = Motion { code: R::select(stopped, R::splat(Motion::<R>::STOPS), code) };
+        let gives = Gives { lambda, flows: !(stops | shut) };
+        gives.offers::<B, _>(&sides, &mut offer);
+        gives.budget::<B, _>(&near, &sides, &mut offer);
         offer
     }
 
@@ -93,9 +125,9 @@ impl<F: Friction, B: Copy> EnergyStable<F, B> {
     fn accelerated<const D: usize, R: Real>(
         &self,
         Cell { state, ground: bed, .. }: &Cell<Flow<D, R>, B>,
-        offer: &FaceStatesOf<D, R, B>,
+        (plane, u, motion): (&B::Plane, [R; D], Motion<R>),
         law: &Resistance<R>,
-        sides: [Sides<R>; D],
+        (sides, slopes): ([Sides<R>; D], Option<&Slopes<D, R>>),
         spacing: &Spacing<D, R>,
         dt: R,
     ) -> [R; D]
@@ -105,11 +137,45 @@ impl<F: Friction, B: Copy> EnergyStable<F, B> {
         let zero = R::zero();
         let forces: [Downstream<R>; D] = per_axis!(k => sides[k].force(spacing.inv[k]));
         let (forces, unresolved) = centred(forces, law.dry);
-        let pushed = pushed::<D, R, B>(&offer.plane, offer.u, forces, dt);
-        let slow = bed.square(offer.u).le(unresolved * R::splat(spacing.smallest));
-        let idle = R::select(slow & !offer.motion.is_tower(), unresolved * R::splat(UNRESOLVED), zero);
-        let dry = R::select(state.is_still(), law.holding, law.dry);
-        let lambda: [R; D] = per_axis!(k => dt * spacing.inv[k]);
-        Self::slowed::<D, R>(&offer.plane, [dry, law.drag, idle], pushed, lambda, dt)
+        let pushed = pushed::<D, R, B>(plane, u, forces, dt);
+        let slow = bed.square(u).le(unresolved * R::splat(spacing.smallest));
+        let idle = R::select(slow & !motion.is_tower(), unresolved * R::splat(UNRESOLVED), zero);
+        let mut dry = R::select(state.is_still(), law.holding, law.dry);
+        let mut ahead = None;
+        if let Some(slopes) = slopes
+            && R::any(slopes.any)
+        {
+            let at_mid_time =
+                self.resistance_at_mid_time(bed, state.h, [u, pushed], slopes, law, (spacing.inv, dt));
+            dry = R::select(slopes.any, at_mid_time, dry);
+            ahead = Some((slopes.any, per_axis!(k => u[k] + (slopes.advected[k] + slopes.advected[k]))));
+        }
+        Self::slowed::<D, R>(plane, [dry, law.drag, idle], pushed, ahead, dt)
+    }
+
+    /// The dry resistance at mid time: of the mean of the velocity before and after the push, moved on and shortened by what friction
+    /// takes in half a step.
+    #[inline(always)]
+    fn resistance_at_mid_time<const D: usize, R: Real>(
+        &self,
+        bed: &B,
+        h: R,
+        [u, pushed]: [[R; D]; 2],
+        slopes: &Slopes<D, R>,
+        law: &Resistance<R>,
+        (per, dt): ([R; D], R),
+    ) -> R
+    where
+        B: Bed<D, R>,
+    {
+        let (one, half) = (R::splat(1.0), R::splat(0.5));
+        let mean: [R; D] = per_axis!(k => half * (u[k] + pushed[k]) + slopes.advected[k]);
+        let speed = bed.square(mean).sqrt();
+        let none = speed.le(R::zero());
+        let keep = (one - half * dt * law.dry / R::select(none, one, speed)).positive_part();
+        self.resistance(bed, h, per_axis!(k => mean[k] * keep), per).dry
     }
 }
+
+/// What a cell of this order keeps of its ends.
+pub(super) type EndsIn<const D: usize, R, const ORDER: u8> = <Order<ORDER> as EndsStorage>::Ends<D, R>;

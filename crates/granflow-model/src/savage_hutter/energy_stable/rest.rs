@@ -11,7 +11,7 @@ use crate::scheme::{Cell, Neighbours, Stencil};
 /// A tower stands over a neighbour by this share of what friction holds: without it the last excess leaks in ever smaller parts.
 pub(super) const TOWER: f64 = 1.01;
 
-impl<F: Friction, B: Copy> EnergyStable<F, B> {
+impl<F: Friction, B: Copy, const ORDER: u8> EnergyStable<F, B, ORDER> {
     /// Does a cell at rest hold itself, and if not, is it a tower: pulled no more than the static bound `holding`, yet above a
     /// neighbour by more, by its surface and by its thickness?
     #[inline(always)]

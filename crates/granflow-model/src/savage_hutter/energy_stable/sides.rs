@@ -9,13 +9,17 @@ use crate::scheme::Forecasts;
 /// The surroundings of a cell, as forecast, along one axis.
 #[derive(Clone, Copy)]
 pub(super) struct Sides<R: Real> {
-    /// The rises of psi to both neighbours after the gain of either; outside the data the surface goes on as it comes, level if
+    /// The rises of psi to both neighbours, as they are.
+    pub(super) level: [R; 2],
+    /// The same after the gain of either; outside the data the surface goes on as it comes, level if
     /// from a bare bed above.
     rises: [R; 2],
     /// How freely mass passes both faces.
     pub(super) free: [R; 2],
-    /// The data end at the face.
+    /// A neighbour is outside the data.
     pub(super) ends: R::Mask,
+    /// Both neighbours may give mass.
+    pub(super) open: R::Mask,
 }
 
 impl<R: Real> Sides<R> {
@@ -35,12 +39,14 @@ impl<R: Real> Sides<R> {
             R::select(outside[side], zero, level[side] + (there[side].gain - here.gain))
         });
         Sides {
+            level,
             rises: per_axis!(side => {
                 let leans = there[1 - side].motion.is_dry() & zero.lt(rise[1 - side]);
                 R::select(outside[side], R::select(leans, zero, -rise[1 - side]), rise[side])
             }),
             free: per_axis!(side => here.motion.between(there[side].motion, level[side])),
             ends: outside[0] | outside[1],
+            open: !(there[0].motion.is_closed() | there[1].motion.is_closed()),
         }
     }
     /// As through the less free of both faces.

@@ -114,7 +114,7 @@ impl<'a, const D: usize, B> Avalanche<'a, D, B> {
         if self.second_order {
             self.run_by("balanced_2", Balanced::<Law, G>::second(law, film), domain, on_terrain, ground)
         } else {
-            self.run_by("energy_stable", EnergyStable::<Law, G>::new(law, film), domain, on_terrain, ground)
+            self.run_by("energy_stable", EnergyStable::<Law, G>::first(law, film), domain, on_terrain, ground)
         }
     }
 

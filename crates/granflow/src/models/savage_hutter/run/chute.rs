@@ -34,7 +34,8 @@ fn on<const D: usize>(run: &RunPlan, plan: Plan) -> Result<Box<dyn Run>, StartEr
     let published = |variant: Variant| variant.with(Coulomb { mu });
     match name {
         SchemeName::Balanced => simulate::<D, _>(run, plan, Balanced::first(law, film)),
-        SchemeName::EnergyStable => simulate::<D, _>(run, plan, EnergyStable::new(law, film)),
+        SchemeName::EnergyStable => simulate::<D, _>(run, plan, EnergyStable::first(law, film)),
+        SchemeName::EnergyStable2 => simulate::<D, _>(run, plan, EnergyStable::second(law, film)),
         SchemeName::Balanced2 => simulate::<D, _>(run, plan, Balanced::second(law, film)),
         SchemeName::Verfahren1 => simulate::<D, _>(run, plan, published(VERFAHREN_1)),
         SchemeName::Verfahren2 => simulate::<D, _>(run, plan, published(VERFAHREN_2)),

@@ -20,7 +20,11 @@ const FAST: f64 = 30.0;
 
 /// The lines about an avalanche on a chute.
 pub(crate) fn chute(run: &RunPlan, plan: OnChute) -> Result<Vec<Line>, StartError> {
-    let order = if run.scheme == "balanced_2" { "second order" } else { "first order" };
+    let order = if run.scheme.ends_with("_2") && !run.scheme.starts_with("verfahren") {
+        "second order"
+    } else {
+        "first order"
+    };
     let mut lines = case(run, material(&plan.material), &format!("{order}, film {:e}, ", plan.scheme.film));
     lines.push(threshold(run, ""));
     lines.extend(grid(&plan));
@@ -33,7 +37,7 @@ pub(crate) fn chute(run: &RunPlan, plan: OnChute) -> Result<Vec<Line>, StartErro
 pub(crate) fn terrain(run: &RunPlan, plan: &OnTerrain) -> Result<Vec<Line>, StartError> {
     let order = match plan.scheme.name {
         TerrainScheme::EnergyStable | TerrainScheme::Balanced => "first order",
-        TerrainScheme::Balanced2 => "second order",
+        TerrainScheme::EnergyStable2 | TerrainScheme::Balanced2 => "second order",
     };
     let mut lines = case(run, material(&plan.material), &format!("{order}, film {:e}, ", plan.scheme.film));
     lines.push(threshold(run, " m"));

@@ -49,14 +49,28 @@ pub(crate) const SETUPS: &[Setup] = &[
         about: "first order, an inclined plane",
         dimensions: 2,
         dry: true,
-        begin: |extent| Box::new(on_plane::<2, _>(energy_stable(), extent)),
+        begin: |extent| Box::new(on_plane::<2, _>(energy_stable(false), extent)),
     },
     Setup {
         name: "energy_stable_terrain",
         about: "first order, a bed of varying slope and curvature",
         dimensions: 2,
         dry: true,
-        begin: |extent| Box::new(on_terrain(energy_stable(), extent)),
+        begin: |extent| Box::new(on_terrain(energy_stable(false), extent)),
+    },
+    Setup {
+        name: "energy_stable_2",
+        about: "second order, an inclined plane",
+        dimensions: 2,
+        dry: true,
+        begin: |extent| Box::new(on_plane::<2, _>(energy_stable(true), extent)),
+    },
+    Setup {
+        name: "energy_stable_2_terrain",
+        about: "second order, a bed of varying slope and curvature",
+        dimensions: 2,
+        dry: true,
+        begin: |extent| Box::new(on_terrain(energy_stable(true), extent)),
     },
     Setup {
         name: "balanced_1d",
@@ -112,8 +126,8 @@ pub(crate) fn balanced<B>(second: bool) -> Balanced<Law, B> {
     if second { Balanced::second(LAW, FILM) } else { Balanced::first(LAW, FILM) }
 }
 
-fn energy_stable<B>() -> EnergyStable<Law, B> {
-    EnergyStable::new(LAW, FILM)
+fn energy_stable<B>(second: bool) -> EnergyStable<Law, B> {
+    if second { EnergyStable::second(LAW, FILM) } else { EnergyStable::first(LAW, FILM) }
 }
 
 pub(crate) fn on_plane<const D: usize, S>(scheme: S, extent: Extent) -> Begun<D, S>

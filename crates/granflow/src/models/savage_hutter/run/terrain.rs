@@ -63,7 +63,11 @@ pub(super) fn simulate(
             begin(run, film, Balanced::second(law, film), (grid, plane), ground, state)
         }
         TerrainScheme::EnergyStable => {
-            let scheme = EnergyStable::new(law, film).below(ceiling);
+            let scheme = EnergyStable::first(law, film).below(ceiling);
+            begin(run, film, scheme, (grid, plane), ground, state)
+        }
+        TerrainScheme::EnergyStable2 => {
+            let scheme = EnergyStable::second(law, film).below(ceiling);
             begin(run, film, scheme, (grid, plane), ground, state)
         }
     }
