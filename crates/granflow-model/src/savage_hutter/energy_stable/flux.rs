@@ -2,6 +2,7 @@
 
 use super::ends::EndsOf;
 use super::faces::{FaceStatesOf, Flux};
+use super::force::is_zero;
 use super::limiter::Exchange;
 use super::meeting::Meeting;
 use super::rest::TOWER;
@@ -84,11 +85,7 @@ fn spread<const D: usize, R: Real, B: Bed<D, R>, T: EndsOf<D, R>>(
     lambda: R,
 ) -> R {
     let zero = R::zero();
-    let mut lets_go = giver.motion.is_tower();
-    for_axis!(k in D => {
-        lets_go = lets_go | !giver.w[k].equals(zero);
-    });
-    lets_go = lets_go & giver.holds[axis].lt(fall);
+    let lets_go = (giver.motion.is_tower() | !is_zero(giver.w)) & giver.holds[axis].lt(fall);
     if !R::any(lets_go) {
         return zero;
     }

@@ -54,6 +54,27 @@ pub(super) fn centred<const D: usize, R: Real>(
     (per_axis!(k => forces[k].centred(share)), dot(apart, apart).sqrt().min(dry))
 }
 
+/// The rises of psi to both neighbours where the data end at one: the surface goes on as it comes, level if from a bare bed (`dry`)
+/// above.
+#[inline(always)]
+pub(super) fn continued<R: Real>(rise: [R; 2], outside: [R::Mask; 2], dry: [R::Mask; 2]) -> [R; 2] {
+    let zero = R::zero();
+    per_axis!(side => {
+        let leans = dry[1 - side] & zero.lt(rise[1 - side]);
+        R::select(outside[side], R::select(leans, zero, -rise[1 - side]), rise[side])
+    })
+}
+
+/// Is it 0 along every axis?
+#[inline(always)]
+pub(super) fn is_zero<const D: usize, R: Real>(w: [R; D]) -> R::Mask {
+    let mut zero = w[0].equals(R::zero());
+    for_axis!(k in D => {
+        zero = zero & w[k].equals(R::zero());
+    });
+    zero
+}
+
 /// u + dt M phi
 #[inline(always)]
 fn accelerated<const D: usize, R: Real, B: Bed<D, R>>(

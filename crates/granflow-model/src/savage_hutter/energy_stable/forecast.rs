@@ -93,8 +93,9 @@ impl<F: Friction, B: Copy, const ORDER: u8> EnergyStable<F, B, ORDER> {
 
     /// [`crate::scheme::Scheme::forecast`].
     ///
-    /// gain = psi' (1 - theta) sum over axes of lambda (q+ of the lower neighbour + q- of the upper one - |q|), and at least -psi' h/2: a downstream force from the old surface makes energy where that is level over a moving layer (E grows by psi' dh^2/2, at
-    /// second order in dt); from the predicted one it does not.
+    /// gain = psi' (1 - theta) sum over axes of lambda (q+ of the lower neighbour + q- of the upper one - |q|), and at least -psi' h/2:
+    /// a downstream force from the old surface makes energy where that is level over a moving layer (E grows by psi' dh^2/2, at second
+    /// order in dt); from the predicted one it does not.
     #[inline(always)]
     pub(super) fn foresee<const D: usize, R: Real>(
         &self,

@@ -31,8 +31,8 @@ impl<F: Friction, B, const ORDER: u8> EnergyStable<F, B, ORDER> {
     }
 
     /// What friction leaves of `pushed`; exactly 0 where it stops the cell, or leaves no more than an acceleration `idle` or than its
-    /// own rounding. Where the flow is smooth it acts along the
-    /// velocity at mid time, `pushed` + x `ahead`, x falling to 0 where it takes half of the speed.
+    /// own rounding. Where the flow is smooth it acts along the velocity at mid time, `pushed` + x `ahead`, x falling to 0 where it
+    /// takes half of the speed.
     #[inline(always)]
     pub(super) fn slowed<const D: usize, R: Real>(
         plane: &B::Plane,

@@ -3,26 +3,16 @@
 use super::budget::Gives;
 use super::ends::{EndsOf, EndsStorage, Slopes};
 use super::faces::{FaceStates, FaceStatesOf};
-use super::force::{Downstream, UNRESOLVED, centred, pushed};
+use super::force::{Downstream, UNRESOLVED, centred, is_zero, pushed};
 use super::forecast::{Forecast, Motion};
 use super::sides::Sides;
 use super::variant::EnergyStable;
-use crate::real::{Real, for_axis, per_axis};
+use crate::real::{Real, per_axis};
 use crate::savage_hutter::Flow;
 use crate::savage_hutter::balanced::Order;
 use crate::savage_hutter::friction::{Friction, Resistance};
 use crate::savage_hutter::ground::Bed;
 use crate::scheme::{Cell, Forecasts, Spacing, Stencil};
-
-/// Is it 0 along every axis?
-#[inline(always)]
-fn is_zero<const D: usize, R: Real>(w: [R; D]) -> R::Mask {
-    let mut zero = w[0].equals(R::zero());
-    for_axis!(k in D => {
-        zero = zero & w[k].equals(R::zero());
-    });
-    zero
-}
 
 /// What a cell that gives nothing offers.
 #[inline(always)]

@@ -1,6 +1,6 @@
 //! When a cell at rest holds itself.
 
-use super::force::{Downstream, UNRESOLVED, centred, pushed};
+use super::force::{Downstream, UNRESOLVED, centred, continued, pushed};
 use super::variant::EnergyStable;
 use crate::real::{Real, for_axis, per_axis};
 use crate::savage_hutter::Flow;
@@ -95,10 +95,7 @@ impl<F: Friction, B: Copy, const ORDER: u8> EnergyStable<F, B, ORDER> {
             let rise = [-B::rise(axis, [&surfaces[0], &surface]), B::rise(axis, [&surface, &surfaces[1]])];
             let outside = [there[0].ground.is_nodata(), there[1].ground.is_nodata()];
             let rise: [R; 2] = per_axis!(side => R::select(outside[side], zero, rise[side]));
-            let goes_on = per_axis!(side => {
-                let leans = self.is_dry(there[1 - side]) & zero.lt(rise[1 - side]);
-                R::select(outside[side], R::select(leans, zero, -rise[1 - side]), rise[side])
-            });
+            let goes_on = continued(rise, outside, [self.is_dry(there[0]), self.is_dry(there[1])]);
             [Downstream::of(goes_on, per[axis]), Downstream::of(self.leaning(there, rise), per[axis])]
         });
         // As a step from rest would push it, per time; or it holds itself by the mean forces.

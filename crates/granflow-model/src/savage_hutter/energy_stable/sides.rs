@@ -1,6 +1,6 @@
 //! The surroundings of a cell along one axis, as forecast.
 
-use super::force::Downstream;
+use super::force::{Downstream, continued};
 use super::forecast::Forecast;
 use crate::real::{Real, per_axis};
 use crate::savage_hutter::ground::Bed;
@@ -11,8 +11,7 @@ use crate::scheme::Forecasts;
 pub(super) struct Sides<R: Real> {
     /// The rises of psi to both neighbours, as they are.
     pub(super) level: [R; 2],
-    /// The same after the gain of either; outside the data the surface goes on as it comes, level if
-    /// from a bare bed above.
+    /// The same after the gain of either, [`continued`] beyond the data.
     rises: [R; 2],
     /// How freely mass passes both faces.
     pub(super) free: [R; 2],
@@ -40,10 +39,7 @@ impl<R: Real> Sides<R> {
         });
         Sides {
             level,
-            rises: per_axis!(side => {
-                let leans = there[1 - side].motion.is_dry() & zero.lt(rise[1 - side]);
-                R::select(outside[side], R::select(leans, zero, -rise[1 - side]), rise[side])
-            }),
+            rises: continued(rise, outside, [there[0].motion.is_dry(), there[1].motion.is_dry()]),
             free: per_axis!(side => here.motion.between(there[side].motion, level[side])),
             ends: outside[0] | outside[1],
             open: !(there[0].motion.is_closed() | there[1].motion.is_closed()),
