@@ -105,6 +105,8 @@ pub enum Until {
     Rest {
         /// Speed below which the mass counts as resting too.
         speed: Option<f64>,
+        /// Thickness (normal to the bed) of a trickle, which does not keep the run from ending.
+        trickle: Option<f64>,
     },
     /// Nothing changes faster than `rate`.
     Steady {

@@ -188,7 +188,7 @@ fn a_mountain() {
     let Kind::Terrain(mountain) = kind else { panic!("it has a terrain") };
     assert_eq!((mountain.dem, mountain.curvature), (folder.path().join("a.tif"), None));
     assert_eq!((mountain.material.gravity, mountain.scheme.film), (9.81, 1e-4));
-    assert_eq!(mountain.scheme.name, terrain::TerrainScheme::EnergyStable);
+    assert_eq!(mountain.scheme.name, terrain::TerrainScheme::EnergyStable2);
     let thickness = terrain::Thickness::Attribute(terrain::Attribute { attribute: "d".into() });
     let path = folder.path().join("r.shp");
     assert_eq!(mountain.releases[0].extent, terrain::Extent::Polygons { path, thickness });

@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 
 use granflow::Checked;
 use granflow::output::summary::StopReason;
-use granflow::results::{FILM_SHARE, Finished};
+use granflow::results::Finished;
 use granflow::run::Run;
 use granflow::session::Options;
 
@@ -68,12 +68,8 @@ pub fn compute(case: Checked, options: &RunOptions) -> Result<Finished, Failure>
     progress.finish();
     let finished = finished?;
     let summary = &finished.summary;
-    if summary.film_share() > FILM_SHARE {
-        eprintln!(
-            "warning: {:.2} % of the mass is in films thinner than {:e}; a smaller scheme.film moves them",
-            100.0 * summary.film_share(),
-            finished.film
-        );
+    for warning in &summary.warnings {
+        eprintln!("warning: {warning}");
     }
     if summary.stop_reason == StopReason::Interrupted {
         return Err(Failure::Interrupted(format!("{}; --resume goes on", line(&finished))));

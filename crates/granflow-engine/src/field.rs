@@ -3,11 +3,8 @@
 use crate::disjoint::DisjointSlice;
 use crate::grid::Layout;
 use crate::parallel;
-use granflow_model::scheme::Components;
+use granflow_model::scheme::{Components, MAX_COMPONENTS};
 use std::marker::PhantomData;
-
-/// The most components that a value of a cell may have: a state, a ground. (Face states and fluxes may have any number.)
-pub const MAX_COMPONENTS: usize = 16;
 
 /// One padded array for each component of a value of a cell.
 #[derive(Debug, Default)]
@@ -37,7 +34,7 @@ impl Field {
         const {
             assert!(
                 P::COUNT <= MAX_COMPONENTS,
-                "too many components: raise MAX_COMPONENTS in granflow-engine/src/field.rs"
+                "too many components: raise MAX_COMPONENTS in granflow-model/src/scheme.rs"
             );
             assert!(P::F32_MASK & P::UNIFORM_MASK == 0, "a uniform component is kept in double precision");
             assert!((P::F32_MASK | P::UNIFORM_MASK) >> P::COUNT == 0, "a mask has bits of no component");

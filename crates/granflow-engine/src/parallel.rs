@@ -28,6 +28,10 @@ mod pool {
     pub(crate) fn map<T: Send>(count: usize, value: impl Fn(usize) -> T + Send + Sync) -> Vec<T> {
         (0..count).into_par_iter().map(value).collect()
     }
+    /// Is there such a number below `count`?
+    pub(crate) fn any(count: usize, is: impl Fn(usize) -> bool + Send + Sync) -> bool {
+        (0..count).into_par_iter().any(is)
+    }
 }
 
 #[cfg(not(feature = "threads"))]
@@ -56,6 +60,10 @@ mod pool {
     pub(crate) fn map<T: Send>(count: usize, value: impl Fn(usize) -> T + Send + Sync) -> Vec<T> {
         (0..count).map(value).collect()
     }
+    /// Is there such a number below `count`?
+    pub(crate) fn any(count: usize, is: impl Fn(usize) -> bool + Send + Sync) -> bool {
+        (0..count).any(is)
+    }
 }
 
-pub(crate) use pool::{for_each, for_each_chunk, for_each_chunk_mut, map, threads};
+pub(crate) use pool::{any, for_each, for_each_chunk, for_each_chunk_mut, map, threads};

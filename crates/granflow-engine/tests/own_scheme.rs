@@ -149,15 +149,6 @@ impl<const D: usize, R: Real> Scheme<D, R> for Upwind {
         sum
     }
     #[inline(always)]
-    fn rk_combine(&self, keep: R, old: &Mixture<R>, new: &Mixture<R>) -> Mixture<R> {
-        let give = R::splat(1.0) - keep;
-        old.combine(
-            *new,
-            #[inline(always)]
-            |old, new| keep * old + give * new,
-        )
-    }
-    #[inline(always)]
     fn is_static(&self, here: &Cell<Mixture<R>, Wind<D, R>>) -> R::Mask {
         here.state.is_none()
     }

@@ -75,6 +75,16 @@ impl<const D: usize, R: Real> Flow<D, R> {
         total(along)
     }
 
+    /// A trickle: a layer no thicker than `thickness` (normal to the bed), or one that carries no more than a layer of that thickness
+    /// at the speed of its waves, h |V| <= sqrt(psi' d^3) with d its depth and psi' d the square of that speed. So slow is what
+    /// seeps through a hollow that a trickle has filled.
+    #[inline(always)]
+    pub fn is_trickle<B: Bed<D, R>>(&self, bed: &B, thickness: R) -> R::Mask {
+        let d = thickness / bed.thickness(R::splat(1.0));
+        let square = self.h * self.h * bed.square(self.velocity());
+        self.h.le(d) | square.le(bed.head() * (d * d * d))
+    }
+
     /// Volume, speed, energy of this state on `bed`; a film is thinner than `film`.
     #[inline(always)]
     pub fn diagnostics<B: Bed<D, R>>(&self, bed: &B, film: R) -> Diagnostics<R> {
@@ -90,3 +100,27 @@ impl<const D: usize, R: Real> Flow<D, R> {
 }
 
 components!([const D: usize, R: Real] Flow<D, R> { h: R, q: [R; D] });
+
+#[cfg(test)]
+mod tests {
+    use super::ground::{Chute, Terrain};
+    use super::*;
+
+    #[test]
+    fn a_trickle_is_thin_or_carries_no_more_than_a_thin_layer_at_the_speed_of_its_waves() {
+        let flat = Chute { tilt: [0.0], beta: 9.81, cos: 9.81, curvature: 0.0 };
+        let flow = |h: f64, u: f64| Flow { h, q: [h * u] };
+        let most = (9.81 * 0.01_f64.powi(3)).sqrt();
+        assert!(flow(0.0099, 30.0).is_trickle(&flat, 0.01));
+        assert!(flow(2.0, 0.99 * most / 2.0).is_trickle(&flat, 0.01));
+        assert!(!flow(2.0, 1.01 * most / 2.0).is_trickle(&flat, 0.01));
+        assert!(!flow(0.0101, 1.0).is_trickle(&flat, 0.01));
+        // On a slope of 60 degrees the layer 1 cm thick has a depth of 2 cm, and its waves the speed sqrt(g c^2 H) along the plan.
+        let steep = Terrain::of(0.0, [3_f64.sqrt(), 0.0], 0.5, [0.0; 3], 9.81);
+        let carried = |h: f64, along: f64| Flow { h, q: [along * 0.5, 0.0] };
+        let most = (9.81 * 0.25 * 0.02_f64.powi(3)).sqrt();
+        assert!(Flow { h: 0.0199, q: [1.0, 0.0] }.is_trickle(&steep, 0.01));
+        assert!(carried(1.0, 0.99 * most).is_trickle(&steep, 0.01));
+        assert!(!carried(1.0, 1.01 * most).is_trickle(&steep, 0.01));
+    }
+}

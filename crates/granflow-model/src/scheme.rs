@@ -19,6 +19,9 @@ pub trait Components<R: Real>: Copy + Send + Sync + 'static {
     fn store(self, put: impl FnMut(usize, R));
 }
 
+/// The most numbers that the state, the ground or the forcing of a scheme may have. (Face states and fluxes may have any number.)
+pub const MAX_COMPONENTS: usize = 16;
+
 impl<R: Real> Components<R> for () {
     const COUNT: usize = 0;
     #[inline(always)]
@@ -292,8 +295,24 @@ pub trait Scheme<const D: usize, R: Real>: Copy + Send + Sync {
     /// a run ends where it is not. It must not depend on the forcing: a changed one is not asked for its rate before the next
     /// step. \[1/time\]
     fn rate(&self, here: &Cell<Self::State, Self::Ground, Self::Forcing>, spacing: &Spacing<D, R>) -> R;
-    /// keep * old + (1 - keep) * new, without undoing an exact stop of `new`.
-    fn rk_combine(&self, keep: R, old: &Self::State, new: &Self::State) -> Self::State;
+    /// keep * old + (1 - keep) * new: how several stages are put together. A scheme that stops exactly must not undo a stop of `new`.
+    #[inline(always)]
+    fn rk_combine(&self, keep: R, old: &Self::State, new: &Self::State) -> Self::State {
+        let give = R::splat(1.0) - keep;
+        let mut sums = [R::zero(); MAX_COMPONENTS];
+        old.store(
+            #[inline(always)]
+            |k, old| sums[k] = keep * old,
+        );
+        new.store(
+            #[inline(always)]
+            |k, new| sums[k] = sums[k] + give * new,
+        );
+        Components::load(
+            #[inline(always)]
+            |k| sums[k],
+        )
+    }
     /// The cell rests by a proof of the scheme (or is dry): with neighbours at rest nothing will change here.
     fn is_static(&self, here: &Cell<Self::State, Self::Ground, Self::Forcing>) -> R::Mask;
     /// The cell is outside the data, and nothing is computed there.

@@ -78,10 +78,6 @@ impl<const D: usize, R: Real> Scheme<D, R> for Upwind {
     fn rate(&self, _here: &Cell<R, ()>, spacing: &Spacing<D, R>) -> R {
         total(spacing.inv) * R::splat(self.a.abs())
     }
-    #[inline(always)]
-    fn rk_combine(&self, keep: R, old: &R, new: &R) -> R {
-        keep * *old + (R::splat(1.0) - keep) * *new
-    }
     /// Where there is nothing, and nothing comes, there will be nothing.
     #[inline(always)]
     fn is_static(&self, here: &Cell<R, ()>) -> R::Mask {

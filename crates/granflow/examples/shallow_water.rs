@@ -182,11 +182,6 @@ impl<const D: usize, R: Real> Scheme<D, R> for SaintVenant {
         let along: [R; D] = per_axis!(k => (u[k].abs() + c) * spacing.inv[k]);
         total(along)
     }
-    #[inline(always)]
-    fn rk_combine(&self, keep: R, old: &Water<D, R>, new: &Water<D, R>) -> Water<D, R> {
-        let give = R::splat(1.0) - keep;
-        Water { h: keep * old.h + give * new.h, q: per_axis!(k => keep * old.q[k] + give * new.q[k]) }
-    }
     /// Water does not hold itself; a tile sleeps where nothing moved in a step and its neighbours do not either.
     #[inline(always)]
     fn is_static(&self, here: &Cell<Water<D, R>, Bed<R>>) -> R::Mask {

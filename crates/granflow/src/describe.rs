@@ -36,8 +36,11 @@ fn ends(run: &RunPlan) -> String {
     ways.extend(ends.until.map(|until| match until {
         Until::Equilibrium => "at the equilibrium, computed directly".to_owned(),
         Until::Steady { rate } => format!("steady, changes below {rate:e} in time"),
-        Until::Rest { speed: Some(speed) } => format!("below speed {speed:e}"),
-        Until::Rest { speed: None } => "at rest".to_owned(),
+        Until::Rest { speed, trickle } => {
+            let rest = speed.map_or("at rest".to_owned(), |speed| format!("below speed {speed:e}"));
+            let trickle = trickle.map(|h| format!(", or at rest but for a trickle (layers of {h})"));
+            rest + &trickle.unwrap_or_default()
+        }
     }));
     ways.extend(ends.kinetic_energy.map(|share| format!("at {share} of the peak kinetic energy")));
     ways.extend(ends.time.map(|end| format!("at time {end}")));

@@ -9,7 +9,6 @@ pub(crate) mod formats;
 mod story;
 
 pub use crate::model::{Maps, Plane};
-pub use crate::output::summary::FILM_SHARE;
 pub use dataset::{About, dataset};
 pub use error::FilesError;
 pub use files::check_kinds;
@@ -45,8 +44,6 @@ pub struct Finished {
     /// Maps of the whole run and of its end, by the names of the model's quantities; x fastest, the first row in
     /// the south.
     pub maps: Maps,
-    /// Thickness of a film.
-    pub film: f64,
     /// The run in numbers.
     pub summary: Summary,
 }

@@ -13,6 +13,7 @@ mod saved;
 mod simulated;
 mod sink;
 mod step_size;
+mod trickle;
 
 pub use crate::entry::{Entry, sum};
 pub use crate::stop_reason::StopReason;
@@ -57,6 +58,8 @@ pub trait Run: Send + Sync {
     }
     /// Keep the kinetic energy after every step, for an end by energy.
     fn track_energy(&mut self);
+    /// Look now and then whether more than a trickle of this thickness moves, for an end at rest but for a trickle.
+    fn track_trickle(&mut self, thickness: f64);
 
     /// One step, not beyond time `until`; returns its length. It is infinite where nothing can move and `until` is
     /// infinite: the state is final.

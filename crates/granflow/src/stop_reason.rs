@@ -9,6 +9,8 @@ use std::fmt;
 pub enum StopReason {
     /// Every cell is at rest and admissible: the mass has come to rest.
     AtRest,
+    /// At rest but for a trickle, which has long been all that moved: `time.trickle`.
+    Trickle,
     /// Nothing changes any more.
     Steady,
     /// The end time of the case was reached.
@@ -23,10 +25,19 @@ pub enum StopReason {
     Interrupted,
 }
 
+impl StopReason {
+    /// The mass has come to rest, or nothing changes any more; but for a trickle.
+    #[must_use]
+    pub fn is_rest(self) -> bool {
+        matches!(self, Self::AtRest | Self::Trickle | Self::Steady)
+    }
+}
+
 impl fmt::Display for StopReason {
     fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
         out.write_str(match self {
             Self::AtRest => "at rest",
+            Self::Trickle => "at rest but for a trickle",
             Self::Steady => "steady",
             Self::EndTime => "end time reached",
             Self::Steps => "number of steps done",

@@ -100,7 +100,7 @@ fn settings() -> impl Iterator<Item = (Order, f64, bool)> {
 #[test]
 fn every_mountain_comes_to_rest() {
     let all = std::env::var_os("GRANFLOW_ALL_MOUNTAINS").is_some();
-    let (mountains, cells) = if all { (40, &[10.0, 5.0][..]) } else { (4, &[10.0][..]) };
+    let (mountains, cells) = if all { (40, &[10.0, 5.0, 2.5][..]) } else { (4, &[10.0][..]) };
     let (mut times, mut moving) = (Vec::new(), Vec::new());
     alone(|| {
         for seed in 0..mountains {

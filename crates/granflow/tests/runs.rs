@@ -3,7 +3,7 @@
 use granflow::Case;
 use granflow::build::{Avalanche, Grid, Sandpile, Table};
 use granflow::case::Frames;
-use granflow::run::{Ends, Run, Until, drive};
+use granflow::run::{Ends, Run, StopReason, Until, drive};
 use granflow::sinks::{Callback, Memory};
 
 const PILE: &str = r#"
@@ -108,7 +108,7 @@ fn sinks_see_every_step_and_memory_keeps_what_it_is_asked_for() {
         assert_eq!(run.steps(), steps);
     });
     let ends = Ends {
-        until: Some(Until::Rest { speed: None }),
+        until: Some(Until::Rest { speed: None, trickle: None }),
         time: Some(50.0),
         steps: None,
         kinetic_energy: None,
@@ -191,7 +191,7 @@ fn what_is_looked_at_changes_nothing_of_what_is_computed() {
     let ends = |time| Ends {
         steps: None,
         time: Some(time),
-        until: Some(Until::Rest { speed: None }),
+        until: Some(Until::Rest { speed: None, trickle: None }),
         kinetic_energy: None,
     };
     for (text, end) in [(PILE, 1.5), (SLIDE, 50.0), (SLIDE, 80.0), (FIXED, 1.0)] {
@@ -316,4 +316,66 @@ fn a_frame_due_a_rounding_after_a_step_is_shown_once() {
     drive(&mut *run, &plan.ends, &mut [&mut memory]).unwrap();
     let times = memory.finish(&mut *run).times;
     assert!(times.windows(2).all(|pair| pair[0] < pair[1]), "{times:?}");
+}
+
+/// A thin layer under Voellmy's law on a slope steeper than mu, and a lump that stops below it.
+const TRICKLE: &str = r#"
+grid = { x = { from = 0.0, to = 400.0, cells = 200 }, boundary = "wall" }
+scheme.film = 1e-4
+material.gravity = 9.81
+material.density = 200.0
+material.slope = { x = [0.0, 200.0, 300.0, 400.0], angle = ["25 deg", "25 deg", "0 deg", "0 deg"] }
+material.friction.voellmy = { mu = 0.3, xi = 1000.0 }
+initial.thickness.formula = "max(0, sign(60 - x))"
+time = { until = "rest", end = 4000.0, trickle = 0.01 }
+"#;
+
+#[test]
+fn a_trickle_does_not_keep_a_run_from_ending_and_is_booked() {
+    let run_of = |trickle: f64, every: f64| {
+        let text = TRICKLE.replace("trickle = 0.01", &format!("trickle = {trickle:?}"));
+        let checked = Case::parse(&text, "test.toml").unwrap().check().unwrap();
+        assert!(checked.plan().notes.iter().any(|note| note.contains("drag")), "{:?}", checked.plan().notes);
+        let ends = checked.plan().ends;
+        let mut run = checked.start().unwrap();
+        let mut memory = Memory::begin(&mut *run, Frames::Every(every), &["thickness"]);
+        let reason = drive(&mut *run, &ends, &mut [&mut memory]).unwrap();
+        (run, reason)
+    };
+    let (run, reason) = run_of(0.01, 1000.0);
+    assert_eq!(reason, StopReason::Trickle);
+    let (flowed, end) = (run.record().flowed, run.time());
+    assert!(flowed > 10.0 && end >= 1.5 * flowed && !run.at_rest(), "{flowed} {end}");
+    let totals = run.totals();
+    assert!(totals.moving > 0 && totals.moving_volume > 0.0, "{totals:?}");
+    assert!(totals.moving_volume < 0.05 * totals.volume, "{totals:?}");
+    // What is written moves no look.
+    let (other, reason) = run_of(0.01, 0.7);
+    assert_eq!(reason, StopReason::Trickle);
+    assert!(bits(&*run) == bits(&*other));
+    // The deposit is that of the run to rest, but for what still moved.
+    let (rest, reason) = run_of(0.0, 1000.0);
+    assert_eq!(reason, StopReason::AtRest);
+    assert!(rest.time() > end, "{} {end}", rest.time());
+    let thickness = |run: &dyn Run| run.field("thickness").unwrap().iter().collect::<Vec<_>>();
+    let (a, b) = (thickness(&*run), thickness(&*rest));
+    let shifted: f64 = a.iter().zip(&b).map(|(a, b)| (a - b).abs()).sum(); // half of it times dx = 2
+    assert!(shifted <= totals.moving_volume, "{shifted} of {}", totals.moving_volume);
+}
+
+#[test]
+fn a_run_taken_up_again_ends_by_the_same_trickle() {
+    let ends = Case::parse(TRICKLE, "test.toml").unwrap().check().unwrap().plan().ends;
+    let mut whole = start(TRICKLE);
+    assert_eq!(drive(&mut *whole, &ends, &mut []).unwrap(), StopReason::Trickle);
+    let mut first = start(TRICKLE);
+    let half =
+        Ends { time: None, steps: Some(whole.steps() * 3 / 4), until: ends.until, kinetic_energy: None };
+    assert_eq!(drive(&mut *first, &half, &mut []).unwrap(), StopReason::Steps);
+    let saved = first.save().into_owned();
+    let mut second = start(TRICKLE);
+    second.restore(saved).unwrap();
+    assert_eq!(drive(&mut *second, &ends, &mut []).unwrap(), StopReason::Trickle);
+    assert_eq!((second.steps(), second.record().flowed), (whole.steps(), whole.record().flowed));
+    assert!(bits(&*whole) == bits(&*second));
 }

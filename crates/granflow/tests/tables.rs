@@ -144,6 +144,7 @@ fn run(name: &str, plane: Plane, full: &[f64], files: &[&str]) -> Finished {
         cell_updates_per_second: 1.0,
         threads: 1,
         version: "0".to_owned(),
+        warnings: Vec::new(),
         extra: serde_json::Map::new(),
     };
     let mut source = vec![0.5; cells];
@@ -156,7 +157,6 @@ fn run(name: &str, plane: Plane, full: &[f64], files: &[&str]) -> Finished {
         maps: vec![("source", source)],
         frames,
         ledger: ledger.entries().to_vec(),
-        film: 0.0,
         summary,
         plane,
     }

@@ -13,11 +13,11 @@ pub use scheme::{Method, SchemeName};
 pub(super) use scheme::NAMES as SCHEMES;
 
 pub(super) use friction::{EarthPressure, Friction};
-pub(super) use scheme::Scheme;
+pub(super) use scheme::{Chosen, Scheme};
 pub(super) use time::Time;
 
 use crate::look::Look;
-use crate::plan::{Ends, OutputPlan, RunPlan, Stepping};
+use crate::plan::{Ends, OutputPlan, RunPlan, Stepping, Until};
 use crate::source::Missing;
 
 /// Gravity on terrain where nobody says another one \[m/s^2\].
@@ -27,7 +27,8 @@ pub const GRAVITY: f64 = 9.81;
 pub(super) const MODEL: &str = "savage_hutter";
 
 /// Keys that not every model has and both kinds of avalanches know.
-pub(super) const KEYS: [&str; 4] = ["material", "scheme.film", "time.rest_speed", "time.stop"];
+pub(super) const KEYS: [&str; 5] =
+    ["material", "scheme.film", "time.rest_speed", "time.trickle", "time.stop"];
 
 /// What `time.until` may be.
 pub(super) const UNTIL: &[&str] = &["rest"];
@@ -36,7 +37,8 @@ pub(super) const UNTIL: &[&str] = &["rest"];
 pub(super) fn plan(
     look: &Look,
     title: &str,
-    scheme: &Scheme,
+    scheme: &Chosen<'_>,
+    material: &Material,
     stepping: Stepping,
     ends: Ends,
     output: OutputPlan,
@@ -47,11 +49,26 @@ pub(super) fn plan(
         scheme: scheme.name.as_str(),
         stepping,
         max_courant: scheme.name.limits().max_courant,
-        notes: scheme.note().into_iter().chain(ends.note()).collect(),
+        notes: scheme.note().into_iter().chain(ends.note()).chain(slow_rest(material, &ends)).collect(),
         ends,
         output,
         source: look.source.clone(),
     }
+}
+
+/// What to know of a run that waits for rest under a law that lets thin layers creep.
+fn slow_rest(material: &Material, ends: &Ends) -> Option<String> {
+    let Some(Until::Rest { trickle, .. }) = ends.until else { return None };
+    material.law.has_drag().then(|| {
+        let until = match trickle {
+            Some(_) => "the run ends before, once nothing but a trickle has moved for long (time.trickle)",
+            None => "set time.trickle, as in trickle = 0.01, for an end before",
+        };
+        format!(
+            "{}: its drag lets thin layers drain ever more slowly, and exact rest can take thousands of seconds; {until}",
+            material.friction
+        )
+    })
 }
 
 /// The law is missing.

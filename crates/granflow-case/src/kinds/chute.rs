@@ -26,6 +26,9 @@ pub const FILM: f64 = 1e-6;
 /// scale to order 1.
 pub const THRESHOLD: f64 = 1e-3;
 
+/// The thickness of a trickle on a chute where nobody says another one, in the unit of the thickness.
+pub const TRICKLE: f64 = 1e-3;
+
 /// An avalanche on a chute, in plain numbers.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Plan {
@@ -170,17 +173,18 @@ impl Written for Words {
     };
 
     fn check(&self, look: &Look) -> Result<(RunPlan, Kind), CaseError> {
-        let Self { title, grid, material, initial, scheme, time, output, .. } = self;
+        let Self { title, grid, material, initial, time, output, .. } = self;
+        let scheme = &self.scheme.or(SchemeName::EnergyStable);
         let cells = Grid { x: grid.x.clone(), y: grid.y.clone() };
         cells.check(look)?;
         let sides = grid.boundary.check(look, &cells)?;
         let (material, Columns { zeta, kappa }) = material.check(look, &cells.x)?;
         let stepping = scheme.check(look)?;
-        self.check_published(look)?;
-        let ends = time.check(look, scheme.name)?;
+        self.check_published(look, scheme.name)?;
+        let ends = time.check(look, scheme.name, TRICKLE)?;
         let written = output.check(look, &ends, &WRITTEN)?;
         let initial = initial.check(look, &cells)?;
-        let run = avalanche::plan(look, title, scheme, stepping, ends, written);
+        let run = avalanche::plan(look, title, scheme, &material, stepping, ends, written);
         let kind = Kind::Chute(Plan {
             grid: cells,
             sides,
@@ -198,11 +202,11 @@ impl Written for Words {
 
 impl Words {
     /// What the published schemes cannot do.
-    fn check_published(&self, look: &Look) -> Result<(), CaseError> {
-        if !self.scheme.name.is_published() {
+    fn check_published(&self, look: &Look, scheme: SchemeName) -> Result<(), CaseError> {
+        if !scheme.is_published() {
             return Ok(());
         }
-        let name = self.scheme.name.as_str();
+        let name = scheme.as_str();
         let refuse = |key: &str, what: &str| {
             let cure = "use the scheme energy_stable, which can";
             Err(look.fault(key, format!("{name} {what}"), cure))
@@ -260,10 +264,10 @@ impl Initial {
 const WRITTEN: Defaults = Defaults { files: ON_A_GRID, precision: Precision::F64, threshold: THRESHOLD };
 
 /// Keys that not every model has.
-const KEYS: [&str; 8] = {
-    let [material, film, rest_speed, stop] = avalanche::KEYS;
+const KEYS: [&str; 9] = {
+    let [material, film, rest_speed, trickle, stop] = avalanche::KEYS;
     let [h, u, v] = ["initial.thickness", "initial.velocity_x", "initial.velocity_y"];
-    [material, film, rest_speed, stop, "grid.boundary", h, u, v]
+    [material, film, rest_speed, trickle, stop, "grid.boundary", h, u, v]
 };
 
 /// Keys of other kinds.

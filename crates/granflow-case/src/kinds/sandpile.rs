@@ -198,6 +198,7 @@ const FOREIGN: &[Foreign] = &[
         "remove it: a sandpile has no maps of peaks and times for a layer to count in",
     ),
     no_meaning("time.rest_speed", "write until = \"steady\" and steady_rate"),
+    no_meaning("time.trickle", "write until = \"steady\" and steady_rate"),
     no_meaning("time.stop", "write until = \"steady\" and steady_rate"),
 ];
 

@@ -27,6 +27,9 @@ pub const FILM: f64 = 1e-4;
 /// The threshold on a mountain where nobody says another one \[m\].
 pub const THRESHOLD: f64 = 0.01;
 
+/// The thickness of a trickle on a mountain where nobody says another one \[m\].
+pub const TRICKLE: f64 = 0.01;
+
 /// An avalanche on a mountain, in plain numbers: metres, seconds.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Plan {
@@ -116,7 +119,8 @@ impl Written for Words {
     };
 
     fn check(&self, look: &Look) -> Result<(RunPlan, Kind), CaseError> {
-        let Self { title, terrain, material, release, scheme, time, output, .. } = self;
+        let Self { title, terrain, material, release, time, output, .. } = self;
+        let scheme = &self.scheme.or(SchemeName::EnergyStable2);
         if release.is_empty() {
             return Err(look.fault(
                 "release",
@@ -126,8 +130,8 @@ impl Written for Words {
         }
         let material = material.check(look)?;
         let stepping = scheme.check(look)?;
-        let order = on_terrain(look, scheme.name)?;
-        let ends = time.check(look, scheme.name)?;
+        let named = on_terrain(look, scheme.name)?;
+        let ends = time.check(look, scheme.name, TRICKLE)?;
         let written = output.check(look, &ends, &WRITTEN)?;
         let curvature = terrain.check(look)?;
         let releases = release.iter().enumerate();
@@ -138,7 +142,7 @@ impl Written for Words {
         for (index, one) in release.iter().enumerate() {
             one.check_files(look, &format!("release[{index}]"))?;
         }
-        let run = avalanche::plan(look, title, scheme, stepping, ends, written);
+        let run = avalanche::plan(look, title, scheme, &material, stepping, ends, written);
         let kind = Kind::Terrain(Plan {
             dem: look.locate(&terrain.dem),
             crs: terrain.crs.clone(),
@@ -146,7 +150,7 @@ impl Written for Words {
             curvature,
             releases,
             material,
-            scheme: scheme.method(order, FILM),
+            scheme: scheme.method(named, FILM),
         });
         Ok((run, kind))
     }
@@ -199,9 +203,9 @@ const WRITTEN: Defaults = Defaults {
 };
 
 /// Keys that not every model has.
-const KEYS: [&str; 6] = {
-    let [material, film, rest_speed, stop] = avalanche::KEYS;
-    [material, film, rest_speed, stop, "terrain", "release"]
+const KEYS: [&str; 7] = {
+    let [material, film, rest_speed, trickle, stop] = avalanche::KEYS;
+    [material, film, rest_speed, trickle, stop, "terrain", "release"]
 };
 
 /// A key that only a scaled case has.

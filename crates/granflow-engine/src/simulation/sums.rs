@@ -14,11 +14,12 @@ impl<const D: usize, S: Scheme<D, f64>> Simulation<D, S> {
             if self.outdated[number] { self.totals_of(&self.tiles[number]) } else { self.sums[number] }
         };
         let parts = parallel::map(self.tiles.len(), sum);
-        let (mut volume, mut film) = (CompensatedSum::default(), CompensatedSum::default());
+        let [mut volume, mut film, mut moving_volume] = [CompensatedSum::default(); 3];
         let mut totals = Totals::default();
         for part in parts {
             volume.add(part.volume);
             film.add(part.film);
+            moving_volume.add(part.moving_volume);
             totals.energy += part.energy;
             totals.wet += part.wet;
             totals.moving += part.moving;
@@ -26,7 +27,8 @@ impl<const D: usize, S: Scheme<D, f64>> Simulation<D, S> {
         }
         let measure = self.grid.measure();
         totals.energy *= measure;
-        Totals { volume: volume.value() * measure, film: film.value() * measure, ..totals }
+        let [volume, film, moving_volume] = [volume, film, moving_volume].map(|sum| sum.value() * measure);
+        Totals { volume, film, moving_volume, ..totals }
     }
 
     /// Take the sums over the cells that have changed, so that [`Simulation::totals`] need not.
@@ -45,6 +47,15 @@ impl<const D: usize, S: Scheme<D, f64>> Simulation<D, S> {
         self.outdated.fill(false);
     }
 
+    /// Is there such a cell inside the data?
+    pub fn any(&self, is: impl Fn(&Cell<S::State, S::Ground, S::Forcing>) -> bool + Sync) -> bool {
+        parallel::any(self.tiles.len(), |number| {
+            let mut found = false;
+            self.visit(&self.tiles[number], |cell| found = found || is(cell));
+            found
+        })
+    }
+
     /// Sums over a tile, per cell measure.
     fn totals_of(&self, tile: &Tile) -> Totals {
         let (mut totals, mut square) = (Totals::default(), 0.0);
@@ -54,7 +65,10 @@ impl<const D: usize, S: Scheme<D, f64>> Simulation<D, S> {
             totals.film += watch.volume * watch.film;
             totals.energy += watch.energy;
             totals.wet += usize::from(watch.volume > 0.0);
-            totals.moving += usize::from(watch.speed_squared > 0.0);
+            if watch.speed_squared > 0.0 {
+                totals.moving += 1;
+                totals.moving_volume += watch.volume;
+            }
             square = watch.speed_squared.max(square);
         });
         totals.speed = square.sqrt();

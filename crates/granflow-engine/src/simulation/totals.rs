@@ -15,4 +15,6 @@ pub struct Totals {
     pub wet: usize,
     /// Cells with a momentum.
     pub moving: usize,
+    /// The part of the volume that is in them.
+    pub moving_volume: f64,
 }

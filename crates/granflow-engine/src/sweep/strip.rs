@@ -31,13 +31,13 @@ use super::plan::Sweep;
 use super::reducer::TileReducer;
 use super::scratch::Scratch;
 use crate::disjoint::DisjointSlice;
-use crate::field::{MAX_COMPONENTS, has};
+use crate::field::has;
 use crate::grid::Layout;
 use crate::lanes::{SimdVector, prefetch};
 use crate::observe::Marks;
 use crate::tiles::{OutletFace, Tile, TileStats};
 use granflow_model::real::{for_axis, per_axis};
-use granflow_model::scheme::{Cell, Components, REACH, Scheme, Spacing, Stencil};
+use granflow_model::scheme::{Cell, Components, MAX_COMPONENTS, REACH, Scheme, Spacing, Stencil};
 
 /// Where the inner loops write.
 pub(super) struct Targets<'a> {

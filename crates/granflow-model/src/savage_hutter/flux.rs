@@ -40,6 +40,11 @@ impl<R: Real> Half<R> {
     pub fn reflected(&self, u: R, share: R) -> R {
         self.momentum(u) * (R::splat(2.0) - (share + share)) + self.push * share
     }
+    /// This share of it.
+    #[inline(always)]
+    pub fn share(self, share: R) -> Self {
+        Half { mass: self.mass * share, push: self.push * share }
+    }
     /// The half where `mask` holds, nothing elsewhere.
     #[inline(always)]
     pub fn only(self, mask: R::Mask) -> Self {

@@ -125,6 +125,17 @@ pub enum Law {
     SamosAt(SamosAt),
 }
 
+impl Law {
+    /// A part of the friction grows with |V|^2: it limits the speed of a thin layer, which therefore drains ever more slowly.
+    #[must_use]
+    pub fn has_drag(&self) -> bool {
+        match self {
+            Law::Coulomb(_) | Law::Cohesion(_) => false,
+            Law::Voellmy(_) | Law::SamosAt(_) => true,
+        }
+    }
+}
+
 impl Friction for Law {
     #[inline(always)]
     fn resistance<R: Real>(&self, thickness: R, speed_squared: R, load: R, weight: R) -> Resistance<R> {

@@ -363,11 +363,6 @@ impl<const D: usize, R: Real> Scheme<D, R> for Kinetic {
     fn rate(&self, here: &Cell<Flow<D, R>, Chute<D, R>>, spacing: &Spacing<D, R>) -> R {
         here.state.rate(&here.ground, spacing.inv)
     }
-    #[inline(always)]
-    fn rk_combine(&self, keep: R, old: &Flow<D, R>, new: &Flow<D, R>) -> Flow<D, R> {
-        let give = R::splat(1.0) - keep;
-        Flow { h: keep * old.h + give * new.h, q: per_axis!(k => keep * old.q[k] + give * new.q[k]) }
-    }
     /// The published schemes prove no rest; a dry cell counts.
     #[inline(always)]
     fn is_static(&self, here: &Cell<Flow<D, R>, Chute<D, R>>) -> R::Mask {

@@ -4,7 +4,7 @@ use super::quantity::{Kind, Quantity, Units};
 #[cfg(all(feature = "geo", feature = "files"))]
 use crate::output::outlines::Outline;
 #[cfg(feature = "files")]
-use crate::output::{netcdf::Crs, report::Findings, summary::Summary};
+use crate::output::{netcdf::Crs, report::KeyFigure, summary::Summary};
 #[cfg(feature = "geo")]
 use crate::raster::Raster;
 use std::any::Any;
@@ -40,8 +40,11 @@ pub struct Model {
     /// The name of a scheme as figures write it.
     pub scheme_title: fn(&str) -> String,
     #[cfg(feature = "files")]
-    /// What a report says of a run, where layers thinner than the second argument are films.
-    pub findings: fn(&Summary, f64) -> Findings,
+    /// The rows of the table of key figures of a run.
+    pub key_figures: fn(&Summary) -> Vec<KeyFigure>,
+    #[cfg(feature = "files")]
+    /// What to know before the numbers of a run are trusted.
+    pub warnings: fn(&Model, &Summary) -> Vec<String>,
     /// What is drawn of it; `None` for nothing.
     #[cfg(feature = "figures")]
     pub pictures: Option<&'static dyn Pictures>,
@@ -57,7 +60,9 @@ impl Model {
         last_instant: false,
         scheme_title: str::to_owned,
         #[cfg(feature = "files")]
-        findings: |summary, _| Findings::of(summary),
+        key_figures: KeyFigure::of_any,
+        #[cfg(feature = "files")]
+        warnings: |_, _| Vec::new(),
         #[cfg(feature = "figures")]
         pictures: None,
     };

@@ -73,7 +73,9 @@ pub static MODEL: Model = Model {
     words: Words { wet: "wet cells", fastest: "speed" },
     scheme_title: |scheme| scheme.replace("verfahren_", "Verfahren "),
     #[cfg(feature = "files")]
-    findings: findings::findings,
+    key_figures: findings::key_figures,
+    #[cfg(feature = "files")]
+    warnings: findings::warnings,
     #[cfg(feature = "figures")]
     pictures: Some(&pictures::Avalanche),
     ..Model::PLAIN

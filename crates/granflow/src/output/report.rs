@@ -46,23 +46,12 @@ impl KeyFigure {
         };
         KeyFigure { name: name.into(), value }
     }
-}
 
-/// What a report says of a run in numbers and words.
-#[derive(Debug, Clone, PartialEq, Eq, Default)]
-pub struct Findings {
-    /// The rows of the table of key figures.
-    pub key_figures: Vec<KeyFigure>,
-    /// What the user should know before trusting the numbers.
-    pub warnings: Vec<String>,
-}
-
-impl Findings {
     /// What can be said of a run of any model.
     #[must_use]
-    pub fn of(summary: &Summary) -> Findings {
+    pub fn of_any(summary: &Summary) -> Vec<KeyFigure> {
         let figure = KeyFigure::number;
-        let key_figures = vec![
+        vec![
             figure("Mass at the start", Some(summary.mass_initial), ""),
             figure("Mass at the end", Some(summary.mass_final), ""),
             KeyFigure { name: "Ended because".into(), value: summary.stop_reason.to_string() },
@@ -70,8 +59,7 @@ impl Findings {
             figure("Largest speed", Some(summary.max_speed), ""),
             figure("Left over the edges", Some(summary.mass_out), ""),
             figure("Mass error (relative)", Some(summary.mass_error), ""),
-        ];
-        Findings { key_figures, warnings: Vec::new() }
+        ]
     }
 }
 
@@ -80,8 +68,8 @@ impl Findings {
 pub struct Report<'a> {
     /// The run in numbers.
     pub summary: &'a Summary,
-    /// The table of key figures, and warnings.
-    pub findings: &'a Findings,
+    /// The rows of the table of key figures.
+    pub key_figures: &'a [KeyFigure],
     /// The pictures, in order.
     pub figures: &'a [Figure],
     /// The text of the case as it was written.
@@ -119,13 +107,13 @@ pub struct Section {
 /// # Errors
 /// [`Error::Io`] if the page cannot be written or a figure not read.
 pub fn write_report(path: &Path, report: Report) -> Result<(), Error> {
-    let Report { summary, findings: Findings { key_figures, warnings }, figures, case, ledger } = report;
+    let Report { summary, key_figures, figures, case, ledger } = report;
     let body = html! {
         p.lead {
             (summary.model) ", " (summary.scheme) ", " (summary.cells) " cells, " (summary.steps) " steps, "
             (readable(summary.wall_seconds)) " s on " (summary.threads) " threads, granflow " (summary.version)
         }
-        @for warning in warnings { p.warning role="note" { strong { "Note: " } (warning) } }
+        @for warning in &summary.warnings { p.warning role="note" { strong { "Note: " } (warning) } }
         h2 { "Key figures" }
         table.key {
             tbody {
@@ -311,20 +299,18 @@ mod tests {
         let figures = [figure(folder.path())];
         let mut summary = sample();
         summary.title = "A <slide> & more".into();
+        summary.warnings = vec!["the film holds 0.6 %".into()];
         let ledger: Vec<_> =
             (0..100).map(|step| Entry { step, time: step as f64, ..Entry::default() }).collect();
-        let findings = Findings {
-            key_figures: vec![
-                KeyFigure::number("Volume", Some(8.0), " m³"),
-                KeyFigure::number("Runout", None, " m"),
-                KeyFigure { name: "Ended because".into(), value: summary.stop_reason.to_string() },
-                KeyFigure { name: "Cells steeper than 60°".into(), value: "746".into() },
-            ],
-            warnings: vec!["the film holds 0.6 %".into()],
-        };
+        let key_figures = [
+            KeyFigure::number("Volume", Some(8.0), " m³"),
+            KeyFigure::number("Runout", None, " m"),
+            KeyFigure { name: "Ended because".into(), value: summary.stop_reason.to_string() },
+            KeyFigure { name: "Cells steeper than 60°".into(), value: "746".into() },
+        ];
         let report = Report {
             summary: &summary,
-            findings: &findings,
+            key_figures: &key_figures,
             figures: &figures,
             case: "x = \"<b>\"",
             ledger: &ledger,

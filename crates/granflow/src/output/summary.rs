@@ -7,9 +7,6 @@ use std::fs;
 use std::io;
 use std::path::Path;
 
-/// A larger share of the mass in films is worth a warning; see [`Summary::film_share`].
-pub const FILM_SHARE: f64 = 0.005;
-
 /// The keys of `summary.json` in their order; a number that is not finite or does not apply is `null`.
 ///
 /// Units are the case's: scaled on a grid, SI on terrain, where mass means volume in m³.
@@ -76,6 +73,9 @@ pub struct Summary {
     pub threads: u64,
     /// Version of granflow.
     pub version: String,
+    /// What to know before the numbers are trusted.
+    #[serde(default)]
+    pub warnings: Vec<String>,
     /// What else is worth knowing, such as `peak_thickness_max`; further keys of the same JSON object, in
     /// alphabetical order.
     #[serde(flatten)]
@@ -94,10 +94,11 @@ impl Summary {
         self.extra.get(key)?.as_f64()
     }
 
-    /// Film volume by final mass; a warning is due above [`FILM_SHARE`].
+    /// A volume by what there was at the start and what came, by sources or over open edges; 0 where there was nothing.
     #[must_use]
-    pub fn film_share(&self) -> f64 {
-        if self.film_volume == 0.0 { 0.0 } else { self.film_volume / self.mass_final }
+    pub fn share(&self, volume: f64) -> f64 {
+        let whole = self.mass_initial + self.mass_in + (-self.mass_out).max(0.0);
+        if whole > 0.0 { volume / whole } else { 0.0 }
     }
 
     /// Writes the summary as indented JSON.
@@ -161,6 +162,7 @@ pub(super) mod tests {
             cell_updates_per_second: 1.6e6,
             threads: 2,
             version: "0.1.0".into(),
+            warnings: Vec::new(),
             extra: serde_json::Map::new(),
         };
         summary.add("peak_thickness_max", 2.3);
@@ -177,7 +179,7 @@ pub(super) mod tests {
             keys.join(", "),
             "title, model, scheme, cells, steps, time, stop_reason, stopping_time, threshold, mass_initial, mass_final, \
              mass_in, mass_out, mass_error, film_volume, max_speed_final, max_speed, runout, reach_angle, wall_seconds, \
-             stepping_seconds, cell_updates_per_second, threads, version, deposit_area, peak_thickness_max"
+             stepping_seconds, cell_updates_per_second, threads, version, warnings, deposit_area, peak_thickness_max"
         );
         for null in ["max_speed", "runout", "reach_angle", "deposit_area"] {
             assert!(text.contains(&format!("\"{null}\": null")), "{null}");
@@ -187,10 +189,10 @@ pub(super) mod tests {
     #[test]
     fn the_stop_reasons_are_spelt_as_the_contract_says() {
         use StopReason::*;
-        let reasons = [AtRest, Steady, EndTime, Steps, KineticEnergy, BelowSpeed, Interrupted];
+        let reasons = [AtRest, Trickle, Steady, EndTime, Steps, KineticEnergy, BelowSpeed, Interrupted];
         assert_eq!(
             serde_json::to_string(&reasons).unwrap(),
-            r#"["at_rest","steady","end_time","steps","kinetic_energy","below_speed","interrupted"]"#
+            r#"["at_rest","trickle","steady","end_time","steps","kinetic_energy","below_speed","interrupted"]"#
         );
     }
 
@@ -202,7 +204,7 @@ pub(super) mod tests {
         let read = Summary::read(&path).unwrap();
         assert!(read.max_speed.is_nan() && read.reach_angle.is_none());
         assert_eq!((read.extra("peak_thickness_max"), read.extra("deposit_area")), (Some(2.3), None));
-        assert_eq!(read.film_share(), 5e-4);
+        assert_eq!(read.share(read.film_volume), 5e-4);
         fs::write(&path, "{\"title\": 3}").unwrap();
         assert!(Summary::read(&path).unwrap_err().to_string().contains("line 1"));
     }

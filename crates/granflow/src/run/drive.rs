@@ -1,6 +1,6 @@
 //! The loop: steps until one of a run's ends is reached, sinks looking on.
 
-use super::{Ends, Failure, Run, Sink, SinkError, StopReason, Until};
+use super::{Ends, Failure, Run, Sink, SinkError, StopReason, Until, trickle};
 
 /// Why a run did not reach an end.
 #[derive(Debug, thiserror::Error)]
@@ -29,6 +29,9 @@ pub fn drive(run: &mut dyn Run, ends: &Ends, sinks: &mut [&mut dyn Sink]) -> Res
     let last = ends.time.unwrap_or(f64::INFINITY);
     if ends.kinetic_energy.is_some() {
         run.track_energy();
+    }
+    if let Some(Until::Rest { trickle: Some(thickness), .. }) = ends.until {
+        run.track_trickle(thickness);
     }
     loop {
         if sinks.iter().any(|sink| sink.wants_end()) {
@@ -83,8 +86,11 @@ fn reached(run: &dyn Run, ends: &Ends, last: f64) -> Option<StopReason> {
     let record = run.record();
     match ends.until {
         Some(Until::Rest { .. }) if run.at_rest() => return Some(StopReason::AtRest),
-        Some(Until::Rest { speed: Some(limit) }) if run.steps() > 1 && run.stepper().speed() < limit => {
+        Some(Until::Rest { speed: Some(limit), .. }) if run.steps() > 1 && run.stepper().speed() < limit => {
             return Some(StopReason::BelowSpeed);
+        }
+        Some(Until::Rest { trickle: Some(_), .. }) if trickle::is_all(run) => {
+            return Some(StopReason::Trickle);
         }
         Some(Until::Steady { rate }) if run.is_steady(rate) => return Some(StopReason::Steady),
         Some(Until::Equilibrium) if run.is_equilibrium() => return Some(StopReason::Steady),

@@ -13,6 +13,8 @@ pub struct Record {
     pub peak_energy: f64,
     /// Kinetic energy per density after the last step, if it is tracked, else at the start.
     pub energy: f64,
+    /// The last time at which more than a trickle was found to move, if that is looked for; 0 before.
+    pub flowed: f64,
     /// Cells with a depth when totals were last taken.
     pub wet_cells: usize,
     /// Time on the clock that the steps of this process took.

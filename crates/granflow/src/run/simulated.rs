@@ -1,6 +1,6 @@
 //! A simulation of the engine as a [`Run`]: what a model adds to its scheme is its [`Physics`].
 
-use super::{Failure, FieldView, Maps, Record, Run, Saved, Totals};
+use super::{Failure, FieldView, Maps, Record, Run, Saved, Totals, trickle};
 use crate::model::Plane;
 use granflow_engine::Stepper;
 use granflow_engine::grid::Layout;
@@ -71,6 +71,10 @@ pub trait Physics<const D: usize>: Send + Sync + 'static {
     }
     /// Put "no value" (NaN) into those places, in a part of a field from number `from` on.
     fn blank(&self, _field: usize, _from: usize, _values: &mut [f64]) {}
+    /// More than a trickle of this thickness moves.
+    fn flows(&self, _simulation: &Simulation<D, Self::Scheme>, _trickle: f64) -> bool {
+        true
+    }
     /// See [`Run::is_steady`].
     fn is_steady(&self, _simulation: &Simulation<D, Self::Scheme>, _rate: f64) -> bool {
         false
@@ -101,6 +105,8 @@ pub struct Simulated<const D: usize, P: Physics<D>> {
     plane: Plane,
     record: Record,
     tracks_energy: bool,
+    /// Thickness of a trickle, if that is looked for.
+    trickle: Option<f64>,
 }
 
 impl<const D: usize, P: Physics<D>> Simulated<D, P> {
@@ -115,11 +121,12 @@ impl<const D: usize, P: Physics<D>> Simulated<D, P> {
             peak_speed: simulation.speed(),
             peak_energy: totals.energy,
             energy: totals.energy,
+            flowed: 0.0,
             wet_cells: totals.wet,
             stepping: Duration::ZERO,
         };
         let fields = physics.fields();
-        Simulated { simulation, physics, fields, plane, record, tracks_energy: false }
+        Simulated { simulation, physics, fields, plane, record, tracks_energy: false, trickle: None }
     }
 
     /// The kinetic energy of the state as it stands, into the record.
@@ -175,6 +182,9 @@ impl<const D: usize, P: Physics<D>> Run for Simulated<D, P> {
             self.note_energy();
         }
     }
+    fn track_trickle(&mut self, thickness: f64) {
+        self.trickle = Some(thickness);
+    }
     fn at_rest(&self) -> bool {
         if self.simulation.is_shown() {
             return false;
@@ -198,6 +208,12 @@ impl<const D: usize, P: Physics<D>> Run for Simulated<D, P> {
         if self.tracks_energy {
             self.simulation.take_sums();
             self.note_energy();
+        }
+        if let Some(thickness) = self.trickle
+            && trickle::is_due(self.simulation.step())
+            && self.physics.flows(&self.simulation, thickness)
+        {
+            self.record.flowed = self.simulation.time();
         }
         Ok(dt)
     }

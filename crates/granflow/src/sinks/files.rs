@@ -47,7 +47,6 @@ pub struct Files {
     directory: PathBuf,
     plan: RunPlan,
     command: String,
-    film: f64,
     writer: Writer,
     schedule: Schedule,
     /// Times of the last frame and of the last ledger line.
@@ -129,7 +128,6 @@ impl Files {
             directory: directory.to_owned(),
             plan: plan.clone(),
             command: command.to_owned(),
-            film: run.film(),
             writer,
             schedule: Schedule::new(plan.output.frames, run.plane()),
             written,

@@ -1,7 +1,7 @@
 //! What every scheme owes: consistency, symmetry, positivity, mass, and one result whatever computes it.
 
 use super::support::{
-    Dice, ORDERS, Order, Surface, Tried, alone, grid, lost, plane, run, states, steps, terrain,
+    Dice, ORDERS, Order, Surface, Tried, alone, grid, lost, on_plane, plane, run, states, steps, terrain,
 };
 use granflow::hadeler_kuttler::scheme::{ADAPTIVE, FIRST_ORDER, SECOND_ORDER};
 use granflow::hadeler_kuttler::table::Table;
@@ -406,6 +406,22 @@ fn bumps(seed: u64) -> impl Fn([f64; 2]) -> Option<Surface<2>> {
     }
 }
 
+/// A bed that rises by `cliff` at x = `at`, within a cell of the size `dx`.
+fn with_cliff(
+    bed: impl Fn([f64; 2]) -> Option<Surface<2>>,
+    cliff: f64,
+    at: f64,
+    dx: f64,
+) -> impl Fn([f64; 2]) -> Option<Surface<2>> {
+    move |x| {
+        let mut surface = bed(x)?;
+        let near = (x[0] - at).abs() < dx;
+        surface.z += if x[0] > at { cliff } else { 0.0 };
+        surface.slope[0] += if near { cliff / (2.0 * dx) } else { 0.0 };
+        Some(surface)
+    }
+}
+
 fn ends(kind: usize) -> Boundary {
     [Boundary::Open, Boundary::Wall, Boundary::Periodic][kind % 3]
 }
@@ -439,6 +455,23 @@ proptest! {
         }
     }
 
+    /// A smooth cap, on which second order is at work, until most of it has left.
+    #[test]
+    fn depths_of_a_cap_stay_positive(
+        tilt in 0.0..0.6, mu in 0.0..0.3, height in 0.1..100.0, u in 0.0..10.0, cells in 15usize..40,
+    ) {
+        let line = grid([cells], [-1.0], 2.0 / cells as f64, Boundary::Open);
+        for order in ORDERS {
+            let start = |[x]: [f64; 1]| {
+                let h = height * (1.0 - 4.0 * x * x).max(0.0);
+                Flow { h, q: [h * u] }
+            };
+            let mut run = on_plane(order, (mu, 1e-6), order.limit(), line, plane([tilt], 1.0), start);
+            let least = alone(|| lowest(&mut run, 400));
+            prop_assert!(least >= 0.0, "{:?}: {:e}", order, least);
+        }
+    }
+
     #[test]
     fn depths_stay_positive_on_a_plane(
         seed: u64, x in -0.6..0.6, y in -0.6..0.6, mu in 0.0..0.8, fast in 0.0..30.0, film in 0usize..2, kind in 0usize..3,
@@ -461,10 +494,10 @@ proptest! {
 
     #[test]
     fn depths_stay_positive_on_rough_terrain(
-        seed: u64, bed: u64, mu in 0.0..0.8, fast in 0.0..60.0, film in 0usize..2, kind in 0usize..2,
+        seed: u64, bed: u64, cliff in 0.0..150.0, mu in 0.0..0.8, fast in 0.0..60.0, film in 0usize..2, kind in 0usize..2,
     ) {
         let sheet = grid([14, 11], [0.0; 2], 2.0, ends(kind));
-        let grounds = terrain(&sheet, bumps(bed));
+        let grounds = terrain(&sheet, with_cliff(bumps(bed), cliff, 14.0, 2.0));
         for order in ORDERS {
             let start = wild::<2>(seed, fast);
             let mut run = run(order, (mu, [0.0, 1e-6][film]), order.limit(), sheet, &grounds, |x, _| start(x));

@@ -20,9 +20,9 @@ use crate::stepping::StepLimits;
 #[serde(deny_unknown_fields)]
 #[schemars(rename = "AvalancheScheme")]
 pub(crate) struct Scheme {
-    /// Name of the method.
-    #[serde(default)]
-    pub name: SchemeName,
+    /// Name of the method (default energy_stable_2 on terrain, energy_stable on a chute).
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub name: Option<SchemeName>,
     /// A fixed time step; instead of `courant`.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub step: Option<f64>,
@@ -36,6 +36,13 @@ pub(crate) struct Scheme {
     pub film: Option<f64>,
 }
 
+/// `[scheme]` with the method that it means.
+pub(crate) struct Chosen<'a> {
+    /// The method.
+    pub name: SchemeName,
+    words: &'a Scheme,
+}
+
 /// `[scheme]`, checked: the method, and what it is told beside the step.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Method<N> {
@@ -46,13 +53,11 @@ pub struct Method<N> {
 }
 
 /// The methods: the five published ones (Kaland 2007) and the conservative ones.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 #[schemars(rename = "AvalancheSchemeName")]
 pub enum SchemeName {
-    /// Conservative, positive, exactly resting; on terrain and straight chutes its energy falls in every step; first order: the
-    /// default.
-    #[default]
+    /// Conservative, positive, exactly resting; on terrain and straight chutes its energy falls in every step; first order.
     EnergyStable,
     /// The same at second order in space and time where the flow is smooth, with one stage a step.
     #[serde(rename = "energy_stable_2")]
@@ -140,21 +145,28 @@ type OnChute = Balanced<Coulomb, Chute<1, f64>>;
 type Stable = EnergyStable<Coulomb, Chute<1, f64>>;
 
 impl Scheme {
+    /// With the method `usual` where the case names none.
+    pub fn or(&self, usual: SchemeName) -> Chosen<'_> {
+        Chosen { name: self.name.unwrap_or(usual), words: self }
+    }
+}
+
+impl Chosen<'_> {
     /// How the time step is chosen.
     pub fn check(&self, look: &Look) -> Result<Stepping, CaseError> {
-        let stepping = look.stepping(self.step, self.courant, self.name.limits())?;
-        look.not_negative("scheme.film", self.film)?;
+        let stepping = look.stepping(self.words.step, self.words.courant, self.name.limits())?;
+        look.not_negative("scheme.film", self.words.film)?;
         Ok(stepping)
     }
 
     /// The method as the run takes it, under the name that its kind of case has for it, with the film of that kind.
     pub fn method<N>(&self, name: N, film: f64) -> Method<N> {
-        Method { name, film: if self.name.is_published() { 0.0 } else { self.film.unwrap_or(film) } }
+        Method { name, film: if self.name.is_published() { 0.0 } else { self.words.film.unwrap_or(film) } }
     }
 
     /// What has no effect, if anything.
     pub fn note(&self) -> Option<String> {
-        let idle = self.name.is_published() && self.film.is_some_and(|film| film > 0.0);
+        let idle = self.name.is_published() && self.words.film.is_some_and(|film| film > 0.0);
         let name = self.name.as_str();
         idle.then(|| format!("{name} is computed as published, without films: scheme.film has no effect"))
     }

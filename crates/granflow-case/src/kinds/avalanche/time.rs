@@ -25,6 +25,10 @@ pub(crate) struct Time {
     /// Speed below which the mass counts as resting; needed with until = "rest" for verfahren_1..5, say 1e-12.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub rest_speed: Option<f64>,
+    /// Thickness of a trickle (default 0.01 m on terrain, else 1e-3; 0 waits for exact rest): the run `until = "rest"` also ends
+    /// once nothing but a trickle has moved for half as long as the mass flowed before.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub trickle: Option<f64>,
     /// The classical criteria.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub stop: Option<Stop>,
@@ -48,9 +52,9 @@ pub(crate) struct Stop {
 }
 
 impl Time {
-    /// What ends the run.
-    pub fn check(&self, look: &Look, scheme: SchemeName) -> Result<Ends, CaseError> {
-        let Self { steps, end, until, rest_speed, stop } = self;
+    /// What ends the run; `usual` is the thickness of a trickle where the case says none.
+    pub fn check(&self, look: &Look, scheme: SchemeName, usual: f64) -> Result<Ends, CaseError> {
+        let Self { steps, end, until, rest_speed, trickle, stop } = self;
         if steps.is_none() && end.is_none() && until.is_none() && stop.is_none() {
             let cure = "add steps = 1000, end = 10.0, until = \"rest\" or stop.kinetic_energy = 0.01";
             return Err(look.fault("time", "nothing ends the run", cure));
@@ -58,17 +62,20 @@ impl Time {
         look.not_zero("time.steps", *steps)?;
         look.positive("time.end", *end)?;
         look.positive("time.rest_speed", *rest_speed)?;
+        look.not_negative("time.trickle", *trickle)?;
         if let Some(stop) = stop {
             let fits = |share: f64| share > 0.0 && share < 1.0;
             let allowed = "a share of the peak, between 0 and 1";
             look.number("time.stop.kinetic_energy", stop.kinetic_energy, fits, allowed)?;
         }
-        if rest_speed.is_some() && until.is_none() {
-            return Err(look.fault(
-                "time.rest_speed",
-                "`rest_speed` has no meaning without until = \"rest\"",
-                "add until = \"rest\" or remove rest_speed",
-            ));
+        for (name, given) in [("rest_speed", rest_speed.is_some()), ("trickle", trickle.is_some())] {
+            if given && until.is_none() {
+                return Err(look.fault(
+                    &format!("time.{name}"),
+                    format!("`{name}` has no meaning without until = \"rest\""),
+                    &format!("add until = \"rest\" or remove {name}"),
+                ));
+            }
         }
         if until.is_some() && scheme.is_published() && rest_speed.is_none() {
             let name = scheme.as_str();
@@ -78,10 +85,12 @@ impl Time {
                 "add rest_speed = 1e-12, or use the scheme energy_stable, which stops exactly",
             ));
         }
+        let usual = if scheme.is_published() { 0.0 } else { usual };
+        let trickle = Some(trickle.unwrap_or(usual)).filter(|thickness| *thickness > 0.0);
         Ok(Ends {
             steps: *steps,
             time: *end,
-            until: until.map(|Rest::Rest| Until::Rest { speed: *rest_speed }),
+            until: until.map(|Rest::Rest| Until::Rest { speed: *rest_speed, trickle }),
             kinetic_energy: stop.as_ref().map(|stop| stop.kinetic_energy),
         })
     }

@@ -1,12 +1,11 @@
 //! A vector of cells: its new states, and what is watched of them.
 
 use super::{Around, Strip};
-use crate::field::MAX_COMPONENTS;
 use crate::lanes::SimdVector;
 use crate::observe::Marks;
 use crate::sweep::reducer::TileReducer;
 use crate::sweep::scratch::Row;
-use granflow_model::scheme::{Cell, Components, Diagnostics, Faces, Scheme};
+use granflow_model::scheme::{Cell, Components, Diagnostics, Faces, MAX_COMPONENTS, Scheme};
 
 /// The cells of a strip that are updated side by side.
 pub(super) struct Vector<L: SimdVector> {

@@ -106,11 +106,6 @@ where
         });
         sum
     }
-    #[inline(always)]
-    fn rk_combine(&self, keep: R, old: &Pile<R>, new: &Pile<R>) -> Pile<R> {
-        let give = R::splat(1.0) - keep;
-        Pile { u: keep * old.u + give * new.u, v: keep * old.v + give * new.v }
-    }
     /// No sand rolls here and none is poured.
     #[inline(always)]
     fn is_static(&self, here: &Cell<Pile<R>, Ground<D, R>, Source<D, R>>) -> R::Mask {

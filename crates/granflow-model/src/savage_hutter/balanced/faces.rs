@@ -1,7 +1,7 @@
 //! What a cell offers to its faces, and what passes one.
 
 use super::slopes::CellSlopes;
-use crate::real::Real;
+use crate::real::{Real, for_axis, per_axis, total};
 use crate::savage_hutter::flux::Half;
 use crate::savage_hutter::ground::Towards;
 use crate::scheme::{Components, components};
@@ -79,6 +79,24 @@ impl<const D: usize, R: Real, P: CellSlopes<D, R>, T> FaceStates<D, R, P, T> {
         let none = mass.equals(R::zero());
         let share = outward.positive_part() / R::select(none, R::splat(1.0), mass.abs());
         R::select(none, R::zero(), share.min(R::splat(1.0)))
+    }
+}
+
+impl<const D: usize, R: Real, P, T> FaceStates<D, R, P, T> {
+    /// Give no more in a stage than there is. The bound on the slopes promises that at the speeds the step was chosen by; a later
+    /// stage has other ones, and far larger ones below a cliff. `lambda` is dt/dx.
+    #[inline(always)]
+    pub(super) fn keep_positive(&mut self, lambda: [R; D]) {
+        let out: [R; D] =
+            per_axis!(axis => lambda[axis] * (self.half[axis][1].mass - self.half[axis][0].mass));
+        let (out, most) = (total(out), R::splat(1.0 - 1e-12) * self.h.positive_part());
+        let over = most.lt(out);
+        if R::any(over) {
+            let share = R::select(over, most / R::select(over, out, R::splat(1.0)), R::splat(1.0));
+            for_axis!(axis in D => {
+                self.half[axis] = per_axis!(side => self.half[axis][side].share(share));
+            });
+        }
     }
 }
 

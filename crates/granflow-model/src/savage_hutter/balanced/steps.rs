@@ -65,7 +65,7 @@ where
         stencil: &impl Stencil<D, R, Flow<D, R>, B>,
         primitives: &[Density<R>; D],
         _forecasts: &Forecasts<D, ()>,
-        _dt: R,
+        dt: R,
     ) -> Self::FaceStates {
         let near = stencil.star();
         let Cell { state, ground, .. } = near.here;
@@ -109,6 +109,9 @@ where
                 face_states.half[axis] = primitives[axis].halves(state.h.positive_part());
             }
         });
+        if self.limited() {
+            face_states.keep_positive(per_axis!(axis => dt * per[axis]));
+        }
         if R::any(closed) {
             for_axis!(axis in D => {
                 face_states.half[axis] = per_axis!(side => face_states.half[axis][side].only(!closed));

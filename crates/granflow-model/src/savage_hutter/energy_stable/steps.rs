@@ -129,11 +129,6 @@ where
         let rate = here.state.rate(&here.ground, spacing.inv).max(fall);
         R::select(here.state.h.lt(R::splat(self.film)), R::zero(), rate)
     }
-    #[inline(always)]
-    fn rk_combine(&self, keep: R, old: &Flow<D, R>, new: &Flow<D, R>) -> Flow<D, R> {
-        let give = R::splat(1.0) - keep;
-        Flow { h: keep * old.h + give * new.h, q: per_axis!(k => keep * old.q[k] + give * new.q[k]) }
-    }
     /// q = 0: a cell that a step leaves at rest and unchanged, every later step leaves so.
     #[inline(always)]
     fn is_static(&self, here: &Cell<Flow<D, R>, B>) -> R::Mask {

@@ -1,38 +1,71 @@
-//! What a report says of an avalanche.
+//! What is said of an avalanche: key figures and warnings.
 
-use crate::output::report::{Findings, KeyFigure};
-use crate::output::summary::{FILM_SHARE, StopReason, Summary};
+use crate::model::Model;
+use crate::output::report::KeyFigure;
+use crate::output::summary::{StopReason, Summary};
 
-/// The key figures of a run on terrain and what to know before trusting them.
-pub(super) fn findings(summary: &Summary, film: f64) -> Findings {
-    let figure = KeyFigure::number;
-    let mut warnings = Vec::new();
-    if !matches!(summary.stop_reason, StopReason::AtRest | StopReason::Steady) {
+/// A larger share of the volume in films, or gone from the grid, is worth a warning.
+const SHARE: f64 = 0.005;
+
+/// What to know before the numbers of a run are trusted.
+pub(super) fn warnings(model: &Model, summary: &Summary) -> Vec<String> {
+    let mut warnings: Vec<String> = unfinished(summary).into_iter().collect();
+    let percent = |volume: f64| 100.0 * summary.share(volume);
+    for outlet in model.outlets {
+        let gone = summary.extra(&format!("mass_out_{outlet}")).unwrap_or(0.0);
+        if summary.share(gone) > SHARE {
+            let over = match outlet {
+                "nodata" => "over cells without elevation".to_owned(),
+                side => format!("over the {side} edge of the grid"),
+            };
+            warnings.push(format!("{:.4} % of the volume ({gone:.6e}) left {over}", percent(gone)));
+        }
+    }
+    if summary.share(summary.film_volume) > SHARE {
         warnings.push(format!(
-            "the run ended before the mass was at rest ({}); what is called deposit is the thickness at the end.",
-            summary.stop_reason
+            "{:.2} % of the volume is held in films thinner than {:e}; a smaller scheme.film moves them",
+            percent(summary.film_volume),
+            summary.extra("film").unwrap_or(f64::NAN)
         ));
     }
-    if summary.film_share() > FILM_SHARE {
-        let share = 100.0 * summary.film_share();
-        warnings.push(format!("{share:.2} % of the mass is held in films thinner than {film:e} m."));
+    warnings
+}
+
+/// Why what is called deposit is none, or not all.
+fn unfinished(summary: &Summary) -> Option<String> {
+    let moving = summary.extra("moving_volume_final").unwrap_or(0.0);
+    let cells = summary.extra("moving_cells_final").unwrap_or(0.0);
+    let share = 100.0 * summary.share(moving);
+    match summary.stop_reason {
+        StopReason::AtRest | StopReason::Steady => None,
+        StopReason::Trickle => Some(format!(
+            "{cells} cells with {share:.2} % of the volume still move, each of them as a trickle; nothing else has moved since \
+             {:.6}. time.trickle = 0 waits until they rest",
+            summary.extra("flowed_until").unwrap_or(f64::NAN)
+        )),
+        reason => Some(format!(
+            "the run ended before the mass was at rest ({reason}): {cells} cells with {share:.2} % of the volume still move, and what \
+             is called deposit is the thickness at the end"
+        )),
     }
-    Findings {
-        key_figures: vec![
-            figure("Volume at the start", Some(summary.mass_initial), " m³"),
-            figure("Volume at the end", Some(summary.mass_final), " m³"),
-            figure("Runout", summary.runout, " m"),
-            figure("Reach angle", summary.reach_angle, "°"),
-            KeyFigure { name: "Ended because".into(), value: summary.stop_reason.to_string() },
-            figure("Counted above", summary.threshold, " m"),
-            figure("Stopping time", summary.stopping_time, " s"),
-            figure("Simulated time", Some(summary.time), " s"),
-            figure("Largest speed", Some(summary.max_speed), " m/s"),
-            figure("Largest peak pressure", summary.extra("peak_pressure_max"), " kPa"),
-            figure("Share of films", Some(summary.film_share() * 100.0), " %"),
-            figure("Left over the edges", Some(summary.mass_out), " m³"),
-            figure("Mass error (relative)", Some(summary.mass_error), ""),
-        ],
-        warnings,
-    }
+}
+
+/// The key figures of a run on terrain.
+pub(super) fn key_figures(summary: &Summary) -> Vec<KeyFigure> {
+    let figure = KeyFigure::number;
+    vec![
+        figure("Volume at the start", Some(summary.mass_initial), " m³"),
+        figure("Volume at the end", Some(summary.mass_final), " m³"),
+        figure("Runout", summary.runout, " m"),
+        figure("Reach angle", summary.reach_angle, "°"),
+        KeyFigure { name: "Ended because".into(), value: summary.stop_reason.to_string() },
+        figure("Counted above", summary.threshold, " m"),
+        figure("Stopping time", summary.stopping_time, " s"),
+        figure("Simulated time", Some(summary.time), " s"),
+        figure("Largest speed", Some(summary.max_speed), " m/s"),
+        figure("Largest peak pressure", summary.extra("peak_pressure_max"), " kPa"),
+        figure("Share of films", Some(100.0 * summary.share(summary.film_volume)), " %"),
+        figure("Left over the edges", Some(summary.mass_out), " m³"),
+        figure("Mass error (relative)", Some(summary.mass_error), ""),
+    ]
 }

@@ -25,10 +25,10 @@ fn write(work: &Work) -> Result<Vec<PathBuf>, FilesError> {
 
 fn page(run: &Finished, figures: &[Figure]) -> Result<PathBuf, output::Error> {
     let path = run.directory.join("report.html");
-    let findings = (run.plane.model().findings)(&run.summary, run.film);
+    let key_figures = (run.plane.model().key_figures)(&run.summary);
     let report = Report {
         summary: &run.summary,
-        findings: &findings,
+        key_figures: &key_figures,
         figures,
         case: &run.case_text,
         ledger: &run.ledger,

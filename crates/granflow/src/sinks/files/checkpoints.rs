@@ -18,6 +18,7 @@ pub(super) fn of<'a>(run: &'a dyn Run, plan: &RunPlan, due: [f64; 2], written: [
     let mut scalars: Vec<(String, f64)> = vec![
         ("peak_speed".into(), record.peak_speed),
         ("peak_energy".into(), record.peak_energy),
+        ("flowed".into(), record.flowed),
         ("initial".into(), record.initial),
         ("next_frame".into(), due[0]),
         ("next_line".into(), due[1]),
@@ -53,6 +54,7 @@ pub(super) fn read(path: &Path, plan: &RunPlan, run: &dyn Run) -> Result<Taken, 
         initial: scalar("initial"),
         peak_speed: scalar("peak_speed"),
         peak_energy: scalar("peak_energy"),
+        flowed: scalar("flowed"),
         ..*run.record()
     };
     let (due, written) =

@@ -16,7 +16,6 @@ pub(super) struct Ending {
     files: Vec<FileKind>,
     case: String,
     case_text: String,
-    film: f64,
     plane: Plane,
     maps: Maps,
     summary: Summary,
@@ -49,7 +48,6 @@ impl Ending {
             files: files.plan.output.files.clone(),
             case: files.plan.resolved(),
             case_text: files.plan.text(),
-            film: files.film,
             plane,
             maps,
             summary,
@@ -58,9 +56,10 @@ impl Ending {
 
     /// Put it together.
     pub fn finished(self, frames: Frames, ledger: Vec<Entry>) -> Finished {
-        let Ending { directory, files, case, case_text, film, plane, mut maps, mut summary } = self;
+        let Ending { directory, files, case, case_text, plane, mut maps, mut summary } = self;
         plane.derive(&mut maps, &mut summary);
-        Finished { directory, files, case, case_text, plane, frames, ledger, maps, film, summary }
+        summary.warnings = (plane.model().warnings)(plane.model(), &summary);
+        Finished { directory, files, case, case_text, plane, frames, ledger, maps, summary }
     }
 }
 
@@ -85,7 +84,6 @@ fn summary(files: &Files, run: &dyn Run, stop_reason: StopReason) -> Summary {
     let out = stepper.outflow();
     let (gone, mass_in, initial) = (sum(out), stepper.poured(), record.initial);
     let wall = files.begun.elapsed().as_secs_f64();
-    let ended = matches!(stop_reason, StopReason::AtRest | StopReason::Steady);
     let speed = |speed: f64| if run.has_speed() { speed } else { f64::NAN };
     let mut summary = Summary {
         title: plan.title.clone(),
@@ -96,7 +94,7 @@ fn summary(files: &Files, run: &dyn Run, stop_reason: StopReason) -> Summary {
         time: run.time(),
         stop_reason,
         threshold: run.threshold(),
-        stopping_time: (ended && !run.is_equilibrium()).then(|| run.time()),
+        stopping_time: (stop_reason.is_rest() && !run.is_equilibrium()).then(|| run.time()),
         mass_initial: initial,
         mass_final: totals.volume,
         mass_in,
@@ -112,6 +110,7 @@ fn summary(files: &Files, run: &dyn Run, stop_reason: StopReason) -> Summary {
         cell_updates_per_second: (stepper.updates() - files.updates) as f64 / wall,
         threads: rayon::current_num_threads() as u64,
         version: env!("CARGO_PKG_VERSION").to_owned(),
+        warnings: Vec::new(),
         extra: serde_json::Map::new(),
     };
     for (name, value) in plane.outlets().iter().zip(out) {

@@ -12,7 +12,6 @@ use granflow_engine::grid::Grid;
 use granflow_engine::kernels::Kernel;
 use granflow_engine::simulation::{BuildError, Simulation, StepSize};
 use granflow_model::savage_hutter::Flow;
-use granflow_model::savage_hutter::balanced::Balanced;
 use granflow_model::savage_hutter::energy_stable::EnergyStable;
 use granflow_model::savage_hutter::friction::{Coulomb, Friction, Law, Resistance};
 use granflow_model::savage_hutter::ground::{Bed, Chute};
@@ -41,12 +40,12 @@ pub struct Slope {
 }
 
 impl<'a, const D: usize, B> Avalanche<'a, D, B> {
-    fn over(grid: Grid<D>, bed: B, film: f64, threshold: f64) -> Self {
+    fn over(grid: Grid<D>, bed: B, second_order: bool, film: f64, threshold: f64) -> Self {
         Avalanche {
             grid,
             bed,
             law: Law::Coulomb(Coulomb { mu: 0.4 }),
-            second_order: false,
+            second_order,
             film,
             threshold,
             step: None,
@@ -76,7 +75,12 @@ impl<'a, const D: usize, B> Avalanche<'a, D, B> {
     pub fn friction(self, law: Law) -> Self {
         Avalanche { law, ..self }
     }
-    /// Second order in space and time: the scheme `balanced_2`.
+    /// First order: the scheme `energy_stable`, the default on a plane.
+    #[must_use]
+    pub fn first_order(self) -> Self {
+        Avalanche { second_order: false, ..self }
+    }
+    /// Second order in smooth flow: the scheme `energy_stable_2`, the default on terrain.
     #[must_use]
     pub fn second_order(self) -> Self {
         Avalanche { second_order: true, ..self }
@@ -107,12 +111,17 @@ impl<'a, const D: usize, B> Avalanche<'a, D, B> {
     ) -> Result<Box<dyn Run>, BuildError>
     where
         G: Bed<D, f64> + 'static,
-        Balanced<Law, G>: Kernel<D, State = Flow<D, f64>, Ground = G>,
         EnergyStable<Law, G>: Kernel<D, State = Flow<D, f64>, Ground = G>,
     {
         let (law, film) = (self.law, self.film);
         if self.second_order {
-            self.run_by("balanced_2", Balanced::<Law, G>::second(law, film), domain, on_terrain, ground)
+            self.run_by(
+                "energy_stable_2",
+                EnergyStable::<Law, G>::second(law, film),
+                domain,
+                on_terrain,
+                ground,
+            )
         } else {
             self.run_by("energy_stable", EnergyStable::<Law, G>::first(law, film), domain, on_terrain, ground)
         }
@@ -169,7 +178,7 @@ impl<'a, const D: usize> Avalanche<'a, D, Slope> {
     #[must_use]
     pub fn on_plane(grid: Grid<D>, angle: f64) -> Self {
         let slope = Slope { angle, gravity: GRAVITY, epsilon: 1.0 };
-        Self::over(grid, slope, granflow_case::chute::FILM, granflow_case::chute::THRESHOLD)
+        Self::over(grid, slope, false, granflow_case::chute::FILM, granflow_case::chute::THRESHOLD)
     }
     /// In the papers' scaling: lengths by L, heights by H = epsilon L, times by sqrt(L/g).
     #[must_use]
@@ -217,6 +226,7 @@ impl<'a> Avalanche<'a, 2, granflow_geo::terrain::Terrain> {
         Self::over(
             grid,
             granflow_geo::terrain::Terrain::new(bed, curvature),
+            true,
             granflow_case::terrain::FILM,
             granflow_case::terrain::THRESHOLD,
         )

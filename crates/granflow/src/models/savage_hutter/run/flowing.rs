@@ -74,6 +74,9 @@ where
     fn threshold(&self) -> f64 {
         self.threshold
     }
+    fn flows(&self, simulation: &Simulation<D, S>, trickle: f64) -> bool {
+        simulation.any(|cell| !cell.state.is_still() && !cell.state.is_trickle(&cell.ground, trickle))
+    }
     fn elevation(&self, simulation: &Simulation<D, S>) -> Vec<f64> {
         simulation.map(|cell| cell.ground.elevation())
     }
@@ -89,13 +92,19 @@ where
         }
         vec![("deposit", deposit), ("yield_margin", margin)]
     }
-    fn numbers(&self, simulation: &Simulation<D, S>, _record: &Record) -> Numbers {
+    fn numbers(&self, simulation: &Simulation<D, S>, record: &Record) -> Numbers {
         let totals = simulation.totals();
-        let share = if totals.volume == 0.0 { 0.0 } else { totals.film / totals.volume };
-        vec![
+        let share = if record.initial == 0.0 { 0.0 } else { totals.film / record.initial };
+        let mut numbers = vec![
+            ("film".to_owned(), self.film),
+            ("film_share".to_owned(), share),
             ("kinetic_energy_final".to_owned(), totals.energy),
             ("moving_cells_final".to_owned(), totals.moving as f64),
-            ("film_share".to_owned(), share),
-        ]
+            ("moving_volume_final".to_owned(), totals.moving_volume),
+        ];
+        if record.flowed > 0.0 {
+            numbers.push(("flowed_until".to_owned(), record.flowed));
+        }
+        numbers
     }
 }
