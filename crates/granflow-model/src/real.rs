@@ -53,6 +53,11 @@ pub trait Real:
     fn abs(self) -> Self;
     /// Natural logarithm.
     fn ln(self) -> Self;
+    /// A function of single numbers, one cell after the other: for what has no other form, or would crowd the loops.
+    fn each<const N: usize, const M: usize>(
+        values: [Self; N],
+        function: impl Fn([f64; N]) -> [f64; M],
+    ) -> [Self; M];
     /// self * factor + term, rounded once. Never in a sum over axes or over the two sides of a face: its terms are not
     /// treated alike, so that a mirror image would differ in the last place.
     fn mul_add(self, factor: Self, term: Self) -> Self;
@@ -197,6 +202,13 @@ impl Real for f64 {
             feature = "std" => { f64::ln(self) }
             _ => { logarithm::ln(self) }
         }
+    }
+    #[inline(always)]
+    fn each<const N: usize, const M: usize>(
+        values: [f64; N],
+        function: impl Fn([f64; N]) -> [f64; M],
+    ) -> [f64; M] {
+        function(values)
     }
     #[inline(always)]
     fn mul_add(self, factor: f64, term: f64) -> f64 {

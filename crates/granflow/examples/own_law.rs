@@ -40,6 +40,7 @@ impl Friction for Pouliquen {
         let low = R::splat(self.low);
         Resistance {
             dry: (low + R::splat(self.high - self.low) * share) * load,
+            viscous: R::zero(),
             drag: R::zero(),
             holding: low * weight,
         }

@@ -16,4 +16,4 @@ pub use crate::models::savage_hutter::run::avalanche::Avalanche;
 pub use granflow_engine::grid::Grid;
 pub use granflow_engine::simulation::{BuildError, StepSize};
 pub use granflow_model::hadeler_kuttler::table::Table;
-pub use granflow_model::savage_hutter::friction::{Cohesion, Coulomb, Law, SamosAt, Voellmy};
+pub use granflow_model::savage_hutter::friction::*;

@@ -8,7 +8,9 @@ use granflow::grid::Grid;
 use granflow::kernels::Kernel;
 use granflow::savage_hutter::Flow;
 use granflow::savage_hutter::energy_stable::EnergyStable;
-use granflow::savage_hutter::friction::{Cohesion, Coulomb, Law, SamosAt, Voellmy};
+use granflow::savage_hutter::friction::{
+    CellByCell, Cohesion, Coulomb, HerschelBulkley, Law, MuI, PouliquenForterre, Quadratic, SamosAt, Voellmy,
+};
 use granflow::savage_hutter::ground::{Chute, Terrain};
 use granflow::scheme::Boundary;
 use granflow::simulation::{Simulation, StepSize};
@@ -19,10 +21,29 @@ type Run = Simulation<2, EnergyStable<Law, Terrain<2, f64>>>;
 
 fn laws(dice: &mut Dice) -> Law {
     let mu = [0.0, dice.between(0.0, 0.3), dice.between(0.3, 0.6)][(dice.roll() * 2.999) as usize];
-    match (dice.roll() * 4.0) as usize {
+    match (dice.roll() * 8.0) as usize {
         0 => Law::Voellmy(Voellmy { mu, xi: dice.between(200.0, 3000.0), gravity: GRAVITY }),
         1 => Law::Cohesion(Cohesion { mu, bond: dice.between(0.0, 5.0) }),
         2 => Law::SamosAt(SamosAt { mu, bond: 0.0, rs0: 0.222, kappa: 0.43, r: 0.05, b: 4.13 }),
+        3 => {
+            let granular = [mu, mu + dice.between(0.05, 0.4), mu + dice.between(0.0, 0.1)];
+            let law = PouliquenForterre { mu: granular, length: 0.1, beta: 0.136, gamma: 1e-3 };
+            CellByCell::PouliquenForterre(law).into()
+        }
+        4 => {
+            let law = MuI { mu1: mu, mu2: mu + 0.3, i0: 0.3, grain: dice.between(1e-3, 0.1), phi: 0.6 };
+            CellByCell::MuI(law).into()
+        }
+        5 => {
+            let (bond, consistency, n) =
+                (dice.between(0.0, 2.0), dice.between(0.0, 0.2), dice.between(0.3, 2.0));
+            CellByCell::HerschelBulkley(HerschelBulkley { bond, consistency, n }).into()
+        }
+        6 => {
+            let (bond, viscosity, manning) =
+                (dice.between(0.0, 2.0), dice.between(0.0, 0.2), dice.between(0.0, 0.1));
+            CellByCell::Quadratic(Quadratic { bond, viscosity, k: 24.0, manning, gravity: GRAVITY }).into()
+        }
         _ => Law::Coulomb(Coulomb { mu }),
     }
 }

@@ -11,7 +11,9 @@ use granflow::kernels::Kernel;
 use granflow::savage_hutter::Flow;
 use granflow::savage_hutter::balanced::Balanced;
 use granflow::savage_hutter::energy_stable::EnergyStable;
-use granflow::savage_hutter::friction::{Coulomb, Law, SamosAt, Voellmy};
+use granflow::savage_hutter::friction::{
+    CellByCell, Coulomb, HerschelBulkley, Law, MuI, PouliquenForterre, Quadratic, SamosAt, Voellmy,
+};
 use granflow::savage_hutter::kinetic::{VERFAHREN_1, VERFAHREN_2, VERFAHREN_3, VERFAHREN_4, VERFAHREN_5};
 use granflow::scheme::{Boundary, Components};
 use granflow::simulation::{SimdLevel, Simulation, StepSize};
@@ -177,6 +179,15 @@ fn lanes_are_the_scalar_on_terrain() {
     on_terrain("voellmy", Law::Voellmy(Voellmy { mu: 0.2, xi: 1500.0, gravity: 9.81 }));
     let samos = SamosAt { mu: 0.155, bond: 0.1, rs0: 0.222, kappa: 0.43, r: 0.05, b: 4.13 };
     on_terrain("samosat", Law::SamosAt(samos));
+    let mu = [0.3, 0.6, 0.35];
+    let granular = PouliquenForterre { mu, length: 0.05, beta: 0.136, gamma: 1e-3 };
+    on_terrain("pouliquen_forterre", CellByCell::PouliquenForterre(granular).into());
+    let mu_i = MuI { mu1: 0.3, mu2: 0.6, i0: 0.3, grain: 0.02, phi: 0.6 };
+    on_terrain("mu_i", CellByCell::MuI(mu_i).into());
+    let mud = HerschelBulkley { bond: 0.2, consistency: 0.05, n: 0.5 };
+    on_terrain("herschel_bulkley", CellByCell::HerschelBulkley(mud).into());
+    let debris = Quadratic { bond: 0.2, viscosity: 0.02, k: 24.0, manning: 0.05, gravity: 9.81 };
+    on_terrain("quadratic", CellByCell::Quadratic(debris).into());
 }
 
 /// On a bed of waves this high.

@@ -75,6 +75,15 @@ impl<L: Real> Real for Pair<L> {
         Pair(self.0.ln(), self.1.ln())
     }
     #[inline(always)]
+    fn each<const N: usize, const M: usize>(
+        values: [Self; N],
+        function: impl Fn([f64; N]) -> [f64; M],
+    ) -> [Self; M] {
+        let first = L::each(values.map(|pair| pair.0), &function);
+        let second = L::each(values.map(|pair| pair.1), &function);
+        std::array::from_fn(|m| Pair(first[m], second[m]))
+    }
+    #[inline(always)]
     fn mul_add(self, factor: Self, term: Self) -> Self {
         Pair(self.0.mul_add(factor.0, term.0), self.1.mul_add(factor.1, term.1))
     }

@@ -1,6 +1,6 @@
 //! One vector of the processor's as a [`Real`].
 
-use super::vector::SimdVector;
+use super::vector::{MAX_LANES, SimdVector};
 use fearless_simd::{Select, Simd, SimdBase, SimdFloat, SimdMask};
 use granflow_model::real::Real;
 use std::fmt::{Debug, Formatter, Result};
@@ -17,11 +17,6 @@ impl<S: Simd> Lanes<S> {
         const { assert!(size_of::<S>() == 0) };
         // SAFETY: a proof holds nothing, and [`super::level::SimdLevel::run`] had one.
         unsafe { std::mem::zeroed() }
-    }
-    #[inline(always)]
-    fn each(self, f: impl Fn(f64) -> f64) -> Self {
-        let numbers = self.0;
-        Lanes(S::f64s::from_fn(Self::proof(), |k| f(numbers.as_slice()[k])))
     }
 }
 
@@ -133,7 +128,22 @@ impl<S: Simd> Real for Lanes<S> {
     }
     #[inline(always)]
     fn ln(self) -> Self {
-        self.each(f64::ln)
+        let numbers = self.0;
+        Lanes(S::f64s::from_fn(Self::proof(), |k| numbers.as_slice()[k].ln()))
+    }
+    #[inline(always)]
+    fn each<const N: usize, const M: usize>(
+        values: [Self; N],
+        function: impl Fn([f64; N]) -> [f64; M],
+    ) -> [Self; M] {
+        let mut found = [[0.0; MAX_LANES]; M];
+        for k in 0..Self::WIDTH {
+            let one = function(std::array::from_fn(|n| values[n].0.as_slice()[k]));
+            for m in 0..M {
+                found[m][k] = one[m];
+            }
+        }
+        found.map(|numbers| Lanes(S::f64s::from_fn(Self::proof(), |k| numbers[k])))
     }
     #[inline(always)]
     fn mul_add(self, factor: Self, term: Self) -> Self {

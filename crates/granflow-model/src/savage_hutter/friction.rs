@@ -1,12 +1,26 @@
 //! Friction laws: what resists a moving mass, and what holds one at rest.
 
+mod coulomb;
+mod granular;
+mod samosat;
+mod voellmy;
+mod yielding;
+
+pub use coulomb::{Cohesion, Coulomb};
+pub use granular::{MuI, PouliquenForterre};
+pub use samosat::SamosAt;
+pub use voellmy::Voellmy;
+pub use yielding::{HerschelBulkley, Quadratic};
+
 use crate::real::Real;
 
 /// The resistance of one law, as accelerations along the bed.
 #[derive(Clone, Copy, Debug)]
 pub struct Resistance<R> {
-    /// Part that does not grow with the speed squared.
+    /// Part that a step takes as it is at its begin.
     pub dry: R,
+    /// Coefficient of |V|, which may itself depend on |V|: a step solves for the speed in it.
+    pub viscous: R,
     /// Coefficient of |V|^2.
     pub drag: R,
     /// Largest pull that a mass at rest withstands (the law at |V| -> 0).
@@ -20,95 +34,11 @@ pub trait Friction: Copy + Send + Sync + 'static {
     fn resistance<R: Real>(&self, thickness: R, speed_squared: R, load: R, weight: R) -> Resistance<R>;
 }
 
-/// mu N+ (Coulomb 1776; report eq. 1, R = cos zeta tan delta).
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Coulomb {
-    /// mu = tan(delta).
-    pub mu: f64,
-}
-
-impl Friction for Coulomb {
-    #[inline(always)]
-    fn resistance<R: Real>(&self, _thickness: R, _speed_squared: R, load: R, weight: R) -> Resistance<R> {
-        let mu = R::splat(self.mu);
-        Resistance { dry: mu * load, drag: R::zero(), holding: mu * weight }
-    }
-}
-
-/// mu N+ + g |V|^2/(xi h) (Voellmy, Schweiz. Bauzeitung 73, 1955).
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Voellmy {
-    /// mu = tan(delta).
-    pub mu: f64,
-    /// Turbulent friction xi \[m/s^2\].
-    pub xi: f64,
-    /// Gravity g \[m/s^2\].
-    pub gravity: f64,
-}
-
-impl Friction for Voellmy {
-    #[inline(always)]
-    fn resistance<R: Real>(&self, thickness: R, speed_squared: R, load: R, weight: R) -> Resistance<R> {
-        let coulomb = Coulomb { mu: self.mu }.resistance(thickness, speed_squared, load, weight);
-        Resistance { drag: R::splat(self.gravity / self.xi) / thickness, ..coulomb }
-    }
-}
-
-/// mu N+ + tau0/(rho h): Coulomb with a cohesive bond to the bed.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Cohesion {
-    /// mu = tan(delta).
-    pub mu: f64,
-    /// Cohesion over density, tau0/rho \[m^2/s^2\].
-    pub bond: f64,
-}
-
-impl Friction for Cohesion {
-    #[inline(always)]
-    fn resistance<R: Real>(&self, thickness: R, speed_squared: R, load: R, weight: R) -> Resistance<R> {
-        let coulomb = Coulomb { mu: self.mu }.resistance(thickness, speed_squared, load, weight);
-        let bond = R::splat(self.bond) / thickness;
-        Resistance { dry: coulomb.dry + bond, holding: coulomb.holding + bond, ..coulomb }
-    }
-}
-
-/// samosAT, the default law of AvaFrame's com1DFA (Sampl & Granig 2009; AvaFrame documentation).
-///
-/// \[tau0 + mu sigma (1 + Rs0/(Rs0 + Rs)) + rho |V|^2/(ln(h/R)/kappa + B)^2\]/(rho h), sigma = rho N+ h,
-/// Rs = rho |V|^2/sigma; h/R is taken as at least 1.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct SamosAt {
-    /// mu.
-    pub mu: f64,
-    /// tau0/rho \[m^2/s^2\].
-    pub bond: f64,
-    /// Rs0.
-    pub rs0: f64,
-    /// kappa.
-    pub kappa: f64,
-    /// R \[m\].
-    pub r: f64,
-    /// B.
-    pub b: f64,
-}
-
-impl Friction for SamosAt {
-    #[inline(always)]
-    fn resistance<R: Real>(&self, thickness: R, speed_squared: R, load: R, weight: R) -> Resistance<R> {
-        let (mu, rs0, one) = (R::splat(self.mu), R::splat(self.rs0), R::splat(1.0));
-        let bond = R::splat(self.bond) / thickness;
-        // Rs0/(Rs0 + Rs) with Rs = |V|^2/(N h), multiplied through by N h: no division by a vanishing load.
-        let pressure = rs0 * load * thickness;
-        let sum = pressure + speed_squared;
-        let share = R::select(sum.le(R::zero()), one, pressure / R::select(sum.le(R::zero()), one, sum));
-        let wall = (thickness * R::splat(1.0 / self.r)).max(one).ln() * R::splat(1.0 / self.kappa)
-            + R::splat(self.b);
-        Resistance {
-            dry: bond + mu * load * (one + share),
-            drag: one / (wall * wall * thickness),
-            holding: bond + mu * (weight + weight),
-        }
-    }
+/// v/speed where v + dt (viscous v + drag v^2) = speed: what the parts that grow with the speed leave of it, implicitly.
+#[inline(always)]
+pub(super) fn kept<R: Real>(viscous: R, drag: R, speed: R, dt: R) -> R {
+    let one = R::splat(1.0) + dt * viscous;
+    R::splat(2.0) / (one + (one * one + R::splat(4.0) * (dt * drag * speed)).sqrt())
 }
 
 /// A law that is known when a case has been read. One type for all, so that each scheme is built once, not once a law; in a
@@ -123,16 +53,51 @@ pub enum Law {
     Cohesion(Cohesion),
     /// [`SamosAt`].
     SamosAt(SamosAt),
+    /// One that is computed cell by cell.
+    CellByCell(CellByCell),
+}
+
+/// The laws that are computed one cell after the other: their powers and iterations would crowd the loops of all other laws.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum CellByCell {
+    /// [`PouliquenForterre`].
+    PouliquenForterre(PouliquenForterre),
+    /// [`MuI`].
+    MuI(MuI),
+    /// [`HerschelBulkley`].
+    HerschelBulkley(HerschelBulkley),
+    /// [`Quadratic`].
+    Quadratic(Quadratic),
 }
 
 impl Law {
-    /// A part of the friction grows with |V|^2: it limits the speed of a thin layer, which therefore drains ever more slowly.
+    /// A part of the friction grows with the speed: it limits that of a thin layer, which therefore drains ever more slowly.
     #[must_use]
     pub fn has_drag(&self) -> bool {
         match self {
             Law::Coulomb(_) | Law::Cohesion(_) => false,
-            Law::Voellmy(_) | Law::SamosAt(_) => true,
+            Law::Voellmy(_) | Law::SamosAt(_) | Law::CellByCell(_) => true,
         }
+    }
+}
+
+impl From<CellByCell> for Law {
+    fn from(law: CellByCell) -> Law {
+        Law::CellByCell(law)
+    }
+}
+
+impl CellByCell {
+    /// The resistance of one cell as an array.
+    #[inline(never)]
+    fn of_one(&self, [thickness, speed_squared, load, weight]: [f64; 4]) -> [f64; 4] {
+        let Resistance { dry, viscous, drag, holding } = match self {
+            CellByCell::PouliquenForterre(law) => law.resistance(thickness, speed_squared, load, weight),
+            CellByCell::MuI(law) => law.resistance(thickness, speed_squared, load, weight),
+            CellByCell::HerschelBulkley(law) => law.resistance(thickness, speed_squared, load, weight),
+            CellByCell::Quadratic(law) => law.resistance(thickness, speed_squared, load, weight),
+        };
+        [dry, viscous, drag, holding]
     }
 }
 
@@ -144,6 +109,11 @@ impl Friction for Law {
             Law::Voellmy(law) => law.resistance(thickness, speed_squared, load, weight),
             Law::Cohesion(law) => law.resistance(thickness, speed_squared, load, weight),
             Law::SamosAt(law) => law.resistance(thickness, speed_squared, load, weight),
+            Law::CellByCell(law) => {
+                let values = [thickness, speed_squared, load, weight];
+                let [dry, viscous, drag, holding] = R::each(values, |values| law.of_one(values));
+                Resistance { dry, viscous, drag, holding }
+            }
         }
     }
 }

@@ -50,6 +50,107 @@ pub(crate) enum Friction {
     Cohesion(Cohesion),
     /// samosAT, the default law of AvaFrame: [tau0 + mu sigma (1 + rs0/(rs0 + Rs)) + rho |V|^2/(ln(h/r)/kappa + b)^2]/(rho h).
     Samosat(Samosat),
+    /// Pouliquen & Forterre (2002): starts above one thickness, stops below a smaller one.
+    PouliquenForterre(PouliquenForterre),
+    /// mu(I), averaged over the depth (Gray & Edwards 2014).
+    MuI(MuI),
+    /// Bingham: a yield stress and a viscosity.
+    Bingham(Bingham),
+    /// Herschel-Bulkley: tau0 + k (rate of shear)^n.
+    HerschelBulkley(HerschelBulkley),
+    /// The quadratic law of mud and debris (O'Brien, Julien & Fullerton 1993).
+    Quadratic(Quadratic),
+}
+
+/// Pouliquen & Forterre's law; its values for glass beads of 0.5 mm are mu1 = 0.384, mu2 = 0.594, mu3 = 0.408, length = 6.5e-4.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub(crate) struct PouliquenForterre {
+    /// Tangent of the angle at which thick layers stop.
+    pub mu1: f64,
+    /// Tangent of the angle above which none stops.
+    pub mu2: f64,
+    /// Tangent of the angle at which thick layers start.
+    pub mu3: f64,
+    /// Length L over which the thickness matters, in m.
+    pub length: f64,
+    /// Froude number of the thinnest uniform flow (default 0.136).
+    #[serde(default = "beta")]
+    pub beta: f64,
+    /// Exponent of slow flow (default 1e-3).
+    #[serde(default = "gamma")]
+    pub gamma: f64,
+}
+
+fn beta() -> f64 {
+    0.136
+}
+
+fn gamma() -> f64 {
+    1e-3
+}
+
+/// The law mu(I).
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub(crate) struct MuI {
+    /// mu of slow flow.
+    pub mu1: f64,
+    /// mu of fast flow.
+    pub mu2: f64,
+    /// Inertial number half way between them.
+    pub i0: f64,
+    /// Diameter of the grains in m.
+    pub grain: f64,
+    /// Share of the volume that the grains fill (default 0.6).
+    #[serde(default = "phi")]
+    pub phi: f64,
+}
+
+fn phi() -> f64 {
+    0.6
+}
+
+/// Bingham's law.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub(crate) struct Bingham {
+    /// Yield stress tau0 in Pa.
+    pub tau0: f64,
+    /// Viscosity eta in Pa s.
+    pub eta: f64,
+}
+
+/// Herschel and Bulkley's law.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub(crate) struct HerschelBulkley {
+    /// Yield stress tau0 in Pa.
+    pub tau0: f64,
+    /// Consistency k in Pa s^n.
+    pub k: f64,
+    /// Exponent n.
+    pub n: f64,
+}
+
+/// The quadratic law of mud and debris.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub(crate) struct Quadratic {
+    /// Yield stress tau0 in Pa.
+    pub tau0: f64,
+    /// Viscosity eta in Pa s.
+    pub eta: f64,
+    /// Resistance parameter K of laminar flow (default 24, a wide smooth bed).
+    #[serde(default = "wide")]
+    pub k: f64,
+    /// Manning's n in s/m^(1/3) (default 0).
+    #[serde(default)]
+    pub manning: f64,
+}
+
+fn wide() -> f64 {
+    24.0
 }
 
 /// Coulomb friction; give `angle` or `mu`.
@@ -134,6 +235,11 @@ impl Friction {
             Self::Voellmy(_) => "voellmy",
             Self::Cohesion(_) => "cohesion",
             Self::Samosat(_) => "samosat",
+            Self::PouliquenForterre(_) => "pouliquen_forterre",
+            Self::MuI(_) => "mu_i",
+            Self::Bingham(_) => "bingham",
+            Self::HerschelBulkley(_) => "herschel_bulkley",
+            Self::Quadratic(_) => "quadratic",
         }
     }
 
@@ -154,6 +260,35 @@ impl Friction {
                 let bond = tau0 / density;
                 law::Law::SamosAt(law::SamosAt { mu, bond, rs0: *rs0, kappa: *kappa, r: *r, b: *b })
             }
+            Self::PouliquenForterre(PouliquenForterre { mu1, mu2, mu3, length, beta, gamma }) => {
+                let mu = [*mu1, *mu2, *mu3];
+                let law = law::PouliquenForterre { mu, length: *length, beta: *beta, gamma: *gamma };
+                law::CellByCell::PouliquenForterre(law).into()
+            }
+            Self::MuI(MuI { mu1, mu2, i0, grain, phi }) => {
+                law::CellByCell::MuI(law::MuI { mu1: *mu1, mu2: *mu2, i0: *i0, grain: *grain, phi: *phi })
+                    .into()
+            }
+            Self::Bingham(Bingham { tau0, eta }) => law::CellByCell::HerschelBulkley(law::HerschelBulkley {
+                bond: tau0 / density,
+                consistency: eta / density,
+                n: 1.0,
+            })
+            .into(),
+            Self::HerschelBulkley(HerschelBulkley { tau0, k, n }) => {
+                let (bond, consistency) = (tau0 / density, k / density);
+                law::CellByCell::HerschelBulkley(law::HerschelBulkley { bond, consistency, n: *n }).into()
+            }
+            Self::Quadratic(Quadratic { tau0, eta, k, manning }) => {
+                law::CellByCell::Quadratic(law::Quadratic {
+                    bond: tau0 / density,
+                    viscosity: eta / density,
+                    k: *k,
+                    manning: *manning,
+                    gravity,
+                })
+                .into()
+            }
         };
         let pressure_coefficient = pressure.coefficient(mu);
         Ok(Material { friction: self.name(), mu, law, pressure_coefficient, gravity, density })
@@ -168,7 +303,16 @@ impl Friction {
             | Self::Voellmy(Voellmy { angle, mu, .. })
             | Self::Cohesion(Cohesion { angle, mu, .. }) => self.coefficient(look, *angle, *mu)?,
             Self::Samosat(law) => self.coefficient(look, None, Some(law.mu))?,
+            Self::PouliquenForterre(law) => law.mu1,
+            Self::MuI(law) => law.mu1,
+            Self::Bingham(_) | Self::HerschelBulkley(_) | Self::Quadratic(_) => 0.0,
         };
+        self.check_numbers(look, key)?;
+        Ok(mu)
+    }
+
+    /// The ranges of the numbers of a law beside mu or an angle; `key` gives the key of one by its name.
+    fn check_numbers(&self, look: &Look, key: impl Fn(&str) -> String) -> Result<(), CaseError> {
         match self {
             Self::Coulomb(_) => {}
             Self::Voellmy(law) => look.positive(&key("xi"), Some(law.xi))?,
@@ -180,8 +324,43 @@ impl Friction {
                 look.positive(&key("r"), Some(law.r))?;
                 look.positive(&key("b"), Some(law.b))?;
             }
+            Self::PouliquenForterre(law) => {
+                look.not_negative(&key("mu1"), Some(law.mu1))?;
+                let above = |mu: f64| mu > law.mu1 && mu.is_finite();
+                look.number(&key("mu2"), law.mu2, above, "a number above mu1")?;
+                let between = |mu: f64| mu >= law.mu1 && mu.is_finite();
+                look.number(&key("mu3"), law.mu3, between, "a number not below mu1")?;
+                look.positive(&key("length"), Some(law.length))?;
+                look.positive(&key("beta"), Some(law.beta))?;
+                look.positive(&key("gamma"), Some(law.gamma))?;
+            }
+            Self::MuI(law) => {
+                look.not_negative(&key("mu1"), Some(law.mu1))?;
+                let above = |mu: f64| mu > law.mu1 && mu.is_finite();
+                look.number(&key("mu2"), law.mu2, above, "a number above mu1")?;
+                look.positive(&key("i0"), Some(law.i0))?;
+                look.positive(&key("grain"), Some(law.grain))?;
+                let share = |phi: f64| phi > 0.0 && phi <= 1.0;
+                look.number(&key("phi"), law.phi, share, "a share above 0, at most 1")?;
+            }
+            Self::Bingham(law) => {
+                look.not_negative(&key("tau0"), Some(law.tau0))?;
+                look.positive(&key("eta"), Some(law.eta))?;
+            }
+            Self::HerschelBulkley(law) => {
+                look.not_negative(&key("tau0"), Some(law.tau0))?;
+                look.positive(&key("k"), Some(law.k))?;
+                let usual = |n: f64| (0.1..=3.0).contains(&n);
+                look.number(&key("n"), law.n, usual, "an exponent from 0.1 to 3")?;
+            }
+            Self::Quadratic(law) => {
+                look.not_negative(&key("tau0"), Some(law.tau0))?;
+                look.not_negative(&key("eta"), Some(law.eta))?;
+                look.not_negative(&key("k"), Some(law.k))?;
+                look.not_negative(&key("manning"), Some(law.manning))?;
+            }
         }
-        Ok(mu)
+        Ok(())
     }
 
     /// mu from exactly one of the two ways to write it.

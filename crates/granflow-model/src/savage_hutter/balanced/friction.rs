@@ -4,7 +4,7 @@ use super::slopes::{Order, SlopeStorage};
 use super::variant::Balanced;
 use crate::real::{Real, for_axis, largest, per_axis};
 use crate::savage_hutter::Flow;
-use crate::savage_hutter::friction::Friction;
+use crate::savage_hutter::friction::{Friction, kept};
 use crate::savage_hutter::ground::Bed;
 
 /// A cell after fluxes and pull, before friction.
@@ -57,17 +57,16 @@ where
         }
         let stops = left.le(zero) | spent | h.lt(R::splat(self.film));
         let mut keep = left / R::select(stops, R::splat(1.0), size);
-        if R::any(!law.drag.equals(zero)) {
-            // v + dt drag v^2 = left/h, solved for v: the part that grows with the square, implicitly.
-            let z = R::select(stops, zero, dt * law.drag * left / R::select(stops, R::splat(1.0), h));
-            keep = keep * (R::splat(2.0) / (R::splat(1.0) + (R::splat(1.0) + R::splat(4.0) * z).sqrt()));
+        if R::any(!(law.drag + law.viscous).equals(zero)) {
+            let speed = R::select(stops, zero, left / R::select(stops, R::splat(1.0), h));
+            keep = keep * kept(law.viscous, law.drag, speed, dt);
         }
         let mut slowed: [R; D] = per_axis!(k => R::select(stops, zero, moved[k] * keep));
         if self.limited() {
             // Along the new velocity friction is first order in time where the flow turns. Where a step takes at most
             // a quarter of the momentum it acts along the old one, as in a forward-Euler step.
             let speed = square.sqrt();
-            let taken = dt * depth * (law.dry + law.drag * square);
+            let taken = dt * depth * (law.dry + law.viscous * speed + law.drag * square);
             let far = (taken * R::splat(4.0)).lt(size) & !(still | stops | speed.le(zero));
             let share = taken / R::select(far, speed, R::splat(1.0));
             for_axis!(k in D => {

@@ -2,7 +2,7 @@
 
 use super::variant::EnergyStable;
 use crate::real::{Real, largest, per_axis};
-use crate::savage_hutter::friction::{Friction, Resistance};
+use crate::savage_hutter::friction::{Friction, Resistance, kept};
 use crate::savage_hutter::ground::Bed;
 
 /// What friction leaves of a velocity is rounding below this share of what it takes.
@@ -36,7 +36,8 @@ impl<F: Friction, B, const ORDER: u8> EnergyStable<F, B, ORDER> {
     #[inline(always)]
     pub(super) fn slowed<const D: usize, R: Real>(
         plane: &B::Plane,
-        [dry, drag, idle]: [R; 3],
+        Resistance { dry, viscous, drag, .. }: Resistance<R>,
+        idle: R,
         pushed: [R; D],
         ahead: Option<(R::Mask, [R; D])>,
         dt: R,
@@ -63,10 +64,8 @@ impl<F: Friction, B, const ORDER: u8> EnergyStable<F, B, ORDER> {
             slowed = per_axis!(k => R::select(turns, pushed[k] - share * along[k], slowed[k]));
         }
         let mut keep = one;
-        if R::any(!drag.equals(zero)) {
-            // v + dt drag v^2 = left, solved for v: the part that grows with the square, implicitly.
-            let z = R::select(stops, zero, dt * drag * left);
-            keep = R::splat(2.0) / (one + (one + R::splat(4.0) * z).sqrt());
+        if R::any(!(drag + viscous).equals(zero)) {
+            keep = kept(viscous, drag, R::select(stops, zero, left), dt);
         }
         per_axis!(k => R::select(stops, zero, slowed[k] * keep))
     }

@@ -140,7 +140,7 @@ where
             dry = R::select(slopes.any, at_mid_time, dry);
             ahead = Some((slopes.any, per_axis!(k => u[k] + (slopes.advected[k] + slopes.advected[k]))));
         }
-        Self::slowed::<D, R>(plane, [dry, law.drag, idle], pushed, ahead, dt)
+        Self::slowed::<D, R>(plane, Resistance { dry, ..*law }, idle, pushed, ahead, dt)
     }
 
     /// The dry resistance at mid time: of the mean of the velocity before and after the push, moved on and shortened by what friction

@@ -165,8 +165,8 @@ impl<'a, const D: usize, B> Avalanche<'a, D, B> {
 
 /// Friction is a finite resistance, never a push.
 fn check_law(law: Law) -> Result<(), BuildError> {
-    let Resistance { dry, drag, holding } = law.resistance(1.0, 1.0, 1.0, 1.0);
-    [dry, drag, holding].into_iter().try_for_each(|part| {
+    let Resistance { dry, viscous, drag, holding } = law.resistance(1.0, 1.0, 1.0, 1.0);
+    [dry, viscous, drag, holding].into_iter().try_for_each(|part| {
         check_value("friction of the law", part, "parameters that give a finite number >= 0", |part| {
             part >= 0.0
         })
