@@ -58,7 +58,8 @@ pub enum ReleaseError {
     },
     /// A thickness is negative or no number.
     #[error(
-        "{path}, feature {feature}: {name} = `{found}` is not a thickness; allowed are numbers from 0 on, in metres",
+        "{path}, feature {feature}: {name} {}; allowed are numbers from 0 on, in metres: give it one, or thickness = 1.0 in \
+         the case for all features", if found.is_empty() { "is not given (NULL)".into() } else { format!("= `{found}` is not a thickness") },
         path = path.display()
     )]
     Thickness {
@@ -102,6 +103,18 @@ pub enum ReleaseError {
         proof: String,
         /// What `ogr2ogr -t_srs` takes.
         target: String,
+    },
+    /// The release is not in metres, and the terrain says no system.
+    #[error(
+        "{path} is in {own}, which is not in metres, and the terrain says no system; name it by crs = \"EPSG:xxxx\" in \
+         [terrain], and reproject the polygons with\n  ogr2ogr -t_srs EPSG:xxxx release_reprojected.shp {path}",
+        path = path.display()
+    )]
+    NoSystem {
+        /// The file.
+        path: PathBuf,
+        /// Its system.
+        own: String,
     },
     /// Some or all of the release lies where the terrain has no values.
     #[error(
@@ -150,7 +163,7 @@ pub enum ReleaseError {
 
 impl ReleaseError {
     pub(super) fn system(path: &Path, own: &Crs, terrain: &Crs, proof: String) -> ReleaseError {
-        let (own, target, terrain) = (own.to_string(), target(Some(terrain)), terrain.to_string());
+        let (own, target, terrain) = (own.describe(), target(Some(terrain)), terrain.describe());
         ReleaseError::System { path: path.into(), own, terrain, proof, target }
     }
 
