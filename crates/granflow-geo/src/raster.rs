@@ -18,6 +18,7 @@ pub use system::Comparison;
 
 use declared::Declared;
 
+use crate::Remark;
 use std::io::Read;
 use std::path::{Path, PathBuf};
 
@@ -49,7 +50,7 @@ pub struct Reading {
     /// Values in metres.
     pub raster: Raster,
     /// One sentence each, with the name of the file.
-    pub notes: Vec<String>,
+    pub notes: Vec<Remark>,
 }
 
 impl Reading {
@@ -77,7 +78,7 @@ impl Reading {
         raster: Raster,
         declared: Declared,
         given: Option<&Crs>,
-        mut notes: Vec<String>,
+        mut notes: Vec<Remark>,
     ) -> Result<Reading, RasterError> {
         let mut raster = raster.checked(path)?;
         let systems = raster.crs.iter().chain(given);
@@ -241,7 +242,7 @@ fn agreed(
     path: &Path,
     own: Option<Crs>,
     given: Option<&Crs>,
-    notes: &mut Vec<String>,
+    notes: &mut Vec<Remark>,
 ) -> Result<Option<Crs>, RasterError> {
     let (Some(own), Some(given)) = (&own, given) else { return Ok(own.or(given.cloned())) };
     match own.compare(given) {
@@ -253,9 +254,12 @@ fn agreed(
 }
 
 /// The note on two systems that could not be compared.
-pub(crate) fn uncertain(path: &Path, own: &Crs, other: &Crs, what: &str) -> String {
+pub(crate) fn uncertain(path: &Path, own: &Crs, other: &Crs, what: &str) -> Remark {
     let (own, other) = (own.describe(), other.describe());
-    format!("{}: whether {own} is {other} could not be decided ({what}); it was taken to be", path.display())
+    let path = path.display();
+    Remark::Warning(format!(
+        "{path}: whether {own} is {other} could not be decided ({what}); it was taken to be"
+    ))
 }
 
 #[cfg(test)]

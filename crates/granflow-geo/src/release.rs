@@ -12,6 +12,7 @@ pub use outlines::Outlines;
 pub use sparse::Sparse;
 pub use vector::Layer;
 
+use crate::Remark;
 use crate::raster::{Comparison, Crs, Raster, uncertain};
 use crate::terrain::Terrain;
 use geo::{Area, BooleanOps, BoundingRect, Polygon, Validation, unary_union};
@@ -95,12 +96,14 @@ impl Layer {
     }
 
     /// What a reader must know who lays this layer on `template`: features left out, systems that could not be compared.
-    pub fn notes(&self, template: &Raster) -> Vec<String> {
+    pub fn notes(&self, template: &Raster) -> Vec<Remark> {
         let mut notes = Vec::new();
         let name = self.name.display();
         if self.left_out > 0 {
             let count = self.left_out;
-            notes.push(format!("{name}: {count} features without a shape or marked deleted were left out"));
+            notes.push(Remark::Note(format!(
+                "{name}: {count} features without a shape or marked deleted were left out"
+            )));
         }
         match (&self.crs, &template.crs) {
             (Some(own), Some(terrain)) => {
@@ -108,14 +111,14 @@ impl Layer {
                     notes.push(uncertain(&self.name, own, terrain, &what));
                 }
             }
-            (None, Some(terrain)) => notes.push(format!(
+            (None, Some(terrain)) => notes.push(Remark::Note(format!(
                 "{name}: it says no coordinate reference system; that of the terrain was taken, {}",
                 terrain.describe()
-            )),
-            (Some(own), None) => notes.push(format!(
+            ))),
+            (Some(own), None) => notes.push(Remark::Warning(format!(
                 "{name}: it is in {}, and the terrain says no system; the two were taken to be one",
                 own.describe()
-            )),
+            ))),
             (None, None) => {}
         }
         notes

@@ -4,6 +4,7 @@
 
 use super::declared::{Declared, conceal};
 use super::{Crs, Raster, RasterError, agreed, beside, turn};
+use crate::Remark;
 use std::path::Path;
 
 /// The value that means nodata where the header names none.
@@ -30,7 +31,7 @@ pub(super) fn read(
     path: &Path,
     sidecar: Declared,
     given: Option<&Crs>,
-    notes: &mut Vec<String>,
+    notes: &mut Vec<Remark>,
 ) -> Result<(Raster, Declared), RasterError> {
     let bytes = std::fs::read(path).map_err(|source| RasterError::Io { path: path.into(), source })?;
     let prj = beside(path, "prj");
@@ -45,7 +46,7 @@ pub(super) fn from_bytes(
     bytes: &[u8],
     (prj, sidecar): (Option<(&Path, &[u8])>, Declared),
     given: Option<&Crs>,
-    notes: &mut Vec<String>,
+    notes: &mut Vec<Remark>,
 ) -> Result<(Raster, Declared), RasterError> {
     let raster = parse(name, bytes, &sidecar)?;
     let own = match prj.map(|(prj, definition)| (prj, Crs::parse(&String::from_utf8_lossy(definition)))) {
@@ -58,7 +59,8 @@ pub(super) fn from_bytes(
         },
         Some((_, Ok(crs))) => Some(crs),
         Some((prj, Err(_))) if given.is_some() => {
-            notes.push(format!("{}: it is not understood; crs of the case was taken", prj.display()));
+            let text = format!("{}: it is not understood; crs of the case was taken", prj.display());
+            notes.push(Remark::Warning(text));
             None
         }
         Some((prj, Err(error))) => {

@@ -3,6 +3,7 @@
 
 use super::system::Heights;
 use super::{RasterError, register};
+use crate::Remark;
 use std::path::{Path, PathBuf};
 use tiff_reader::TiffFile;
 
@@ -123,7 +124,7 @@ impl Declared {
     }
 
     /// Factor and offset that make metres of stored values, with notes on what is not 1 and 0.
-    pub fn to_metres(&self, path: &Path, notes: &mut Vec<String>) -> Result<[f64; 2], RasterError> {
+    pub fn to_metres(&self, path: &Path, notes: &mut Vec<Remark>) -> Result<[f64; 2], RasterError> {
         let metres = self.unit_in_metres(path, notes)?;
         let [scale, offset] = [self.scale.unwrap_or(1.0), self.offset.unwrap_or(0.0)];
         if !(scale.is_finite() && scale != 0.0 && offset.is_finite()) {
@@ -134,15 +135,21 @@ impl Declared {
             return Err(RasterError::Declared { path: path.into(), problem });
         }
         if scale != 1.0 || offset != 0.0 {
-            notes.push(format!("{}: stored values times {scale} plus {offset}, as it says", path.display()));
+            notes.push(Remark::Note(format!(
+                "{}: stored values times {scale} plus {offset}, as it says",
+                path.display()
+            )));
         }
         if metres != 1.0 {
-            notes.push(format!("{}: its unit of {metres} m was converted to metres", path.display()));
+            notes.push(Remark::Note(format!(
+                "{}: its unit of {metres} m was converted to metres",
+                path.display()
+            )));
         }
         Ok([scale * metres, offset * metres])
     }
 
-    fn unit_in_metres(&self, path: &Path, notes: &mut Vec<String>) -> Result<f64, RasterError> {
+    fn unit_in_metres(&self, path: &Path, notes: &mut Vec<Remark>) -> Result<f64, RasterError> {
         let error = |problem: String| RasterError::Declared { path: path.into(), problem };
         let cure = format!("gdal_edit.py -units m {}", path.display());
         let named = match &self.unit {
@@ -161,7 +168,7 @@ impl Declared {
             (Some(named), _) => Ok(named),
             (None, Some(Heights::Unknown)) => {
                 let text = "the unit of its heights is not known; metres were assumed";
-                notes.push(format!("{}: {text}", path.display()));
+                notes.push(Remark::Warning(format!("{}: {text}", path.display())));
                 Ok(1.0)
             }
             (None, None) => Ok(1.0),
@@ -226,7 +233,7 @@ mod tests {
         let [factor, offset] = found.to_metres(Path::new("dem.tif"), &mut notes).unwrap();
         assert!((factor - 0.6096).abs() < 1e-15 && (offset - 0.9144).abs() < 1e-15);
         assert!(
-            notes[0].contains("times 2 plus 3") && notes[1].contains("0.3048 m was converted"),
+            notes[0].text().contains("times 2 plus 3") && notes[1].text().contains("0.3048 m was converted"),
             "{notes:?}"
         );
     }

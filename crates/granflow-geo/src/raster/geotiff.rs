@@ -6,6 +6,7 @@ mod write;
 
 use super::declared::Declared;
 use super::{Crs, Raster, RasterError, agreed, turn};
+use crate::Remark;
 use geotiff_reader::GeoTiffFile;
 use keys::Horizontal;
 use std::path::Path;
@@ -18,7 +19,7 @@ pub(super) fn read(
     path: &Path,
     beside: Declared,
     given: Option<&Crs>,
-    notes: &mut Vec<String>,
+    notes: &mut Vec<Remark>,
 ) -> Result<(Raster, Declared), RasterError> {
     decoded(path, GeoTiffFile::open(path), beside, given, notes)
 }
@@ -28,7 +29,7 @@ pub(super) fn from_bytes(
     name: &Path,
     bytes: Vec<u8>,
     given: Option<&Crs>,
-    notes: &mut Vec<String>,
+    notes: &mut Vec<Remark>,
 ) -> Result<(Raster, Declared), RasterError> {
     decoded(name, GeoTiffFile::from_bytes(bytes), Declared::default(), given, notes)
 }
@@ -38,7 +39,7 @@ fn decoded(
     file: Result<GeoTiffFile, geotiff_reader::Error>,
     beside: Declared,
     given: Option<&Crs>,
-    notes: &mut Vec<String>,
+    notes: &mut Vec<Remark>,
 ) -> Result<(Raster, Declared), RasterError> {
     let error = |problem: &dyn std::fmt::Display| RasterError::geotiff(path, problem);
     let file = file.map_err(|e| match e {
@@ -122,7 +123,7 @@ fn system(
     file: &GeoTiffFile,
     declared: &Declared,
     given: Option<&Crs>,
-    notes: &mut Vec<String>,
+    notes: &mut Vec<Remark>,
 ) -> Result<Option<Crs>, RasterError> {
     let keys = file.geokeys();
     let own = match (&declared.system, keys::horizontal(keys)) {
@@ -134,7 +135,7 @@ fn system(
         (None, Horizontal::None) => None,
         (None, Horizontal::Unknown) if given.is_some() => {
             let text = "its coordinate reference system is described by parameters that are not understood; crs of the case was taken";
-            notes.push(format!("{}: {text}", path.display()));
+            notes.push(Remark::Warning(format!("{}: {text}", path.display())));
             None
         }
         (None, Horizontal::Unknown) => {

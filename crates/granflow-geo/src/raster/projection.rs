@@ -11,7 +11,7 @@ pub(super) struct Projection {
 }
 
 /// Methods by their name without blanks and underscores; others go by the name itself.
-const METHODS: [(&str, &[&str]); 13] = [
+const METHODS: [(&str, &[&str]); 15] = [
     ("transverse_mercator", &["transversemercator", "gausskruger", "transversemercatorcomplex"]),
     (
         "lambert_conformal_conic",
@@ -58,16 +58,20 @@ const METHODS: [(&str, &[&str]); 13] = [
     ("equirectangular", &["equirectangular", "platecarree", "equidistantcylindrical"]),
     ("cassini_soldner", &["cassinisoldner", "cassini"]),
     ("polyconic", &["polyconic", "americanpolyconic"]),
+    (KROVAK, &["krovak", "krovaknorthorientated"]),
+    ("lambert_belgium", &["lambertconformalconic2spbelgium", "lambertconicconformal2spbelgium"]),
 ];
 
 /// The method of web maps.
 pub(super) const PSEUDO_MERCATOR: &str = "pseudo_mercator";
 const POLAR: &str = "polar_stereographic";
+const KROVAK: &str = "krovak";
 
 const LATITUDE: &str = "latitude of origin";
 const LONGITUDE: &str = "longitude of origin";
 const PARALLEL_1: &str = "first standard parallel";
 const PARALLEL_2: &str = "second standard parallel";
+const PSEUDO_PARALLEL: &str = "pseudo standard parallel";
 const AZIMUTH: &str = "azimuth";
 const GRID_ANGLE: &str = "angle of the grid";
 const SCALE: &str = "scale factor";
@@ -75,7 +79,7 @@ const EASTING: &str = "false easting";
 const NORTHING: &str = "false northing";
 
 /// Parameters by their name without blanks and underscores; others go by the name itself.
-const PARAMETERS: [(&str, &[&str]); 9] = [
+const PARAMETERS: [(&str, &[&str]); 10] = [
     (
         LATITUDE,
         &[
@@ -100,7 +104,7 @@ const PARAMETERS: [(&str, &[&str]); 9] = [
     ),
     (PARALLEL_1, &["standardparallel1", "latitudeof1ststandardparallel", "latitudeofstandardparallel"]),
     (PARALLEL_2, &["standardparallel2", "latitudeof2ndstandardparallel"]),
-    (AZIMUTH, &["azimuth", "azimuthofinitialline", "azimuthatprojectioncentre"]),
+    (AZIMUTH, &["azimuth", "azimuthofinitialline", "azimuthatprojectioncentre", "colatitudeofconeaxis"]),
     (GRID_ANGLE, &["rectifiedgridangle", "anglefromrectifiedtoskewgrid"]),
     (
         SCALE,
@@ -109,8 +113,10 @@ const PARAMETERS: [(&str, &[&str]); 9] = [
             "scalefactoratnaturalorigin",
             "scalefactoratprojectioncentre",
             "scalefactoroninitialline",
+            "scalefactoronpseudostandardparallel",
         ],
     ),
+    (PSEUDO_PARALLEL, &["pseudostandardparallel1", "latitudeofpseudostandardparallel"]),
     (EASTING, &["falseeasting", "eastingatfalseorigin", "eastingatprojectioncentre"]),
     (NORTHING, &["falsenorthing", "northingatfalseorigin", "northingatprojectioncentre"]),
 ];
@@ -148,7 +154,11 @@ impl Projection {
             Some((name, node.number(1)? * factor))
         };
         let parameters = found.iter().filter_map(value).collect();
-        Some(Projection { method, parameters }.normal())
+        let mut projection = Projection { method, parameters }.normal();
+        if projection.method == KROVAK {
+            projection.orient(crs);
+        }
+        Some(projection)
     }
 
     /// One way of saying where there are several.
@@ -156,6 +166,9 @@ impl Projection {
         let [first, second] = [PARALLEL_1, PARALLEL_2].map(|name| self.own(name));
         match (&*self.method, first, second) {
             // ESRI gives the parallel of true scale, OGC calls it the latitude of origin.
+            ("stereographic", ..) if (self.value(LATITUDE).abs() - 90.0).abs() < 1e-6 => {
+                self.method = POLAR.into()
+            }
             (POLAR, Some(parallel), _) => {
                 self.parameters.retain(|(name, _)| name != LATITUDE && name != PARALLEL_1);
                 self.parameters.push((LATITUDE.into(), parallel));
@@ -172,6 +185,21 @@ impl Projection {
             _ => {}
         }
         self
+    }
+
+    /// Krovak's map counts southward and westward, or with both turned; ESRI says so by a scale of -1, OGC by its axes, WKT 2
+    /// by the name of the method.
+    fn orient(&mut self, crs: &Node) {
+        let named = crs.find(&["METHOD"]).and_then(|method| method.text(0));
+        let turned = named.is_some_and(|name| name.contains("North Orientated"));
+        let east = crs.child(&["AXIS"]).and_then(|axis| axis.text(1)).is_some_and(|way| way == "EAST");
+        let north = match (named, self.own("xscale")) {
+            (Some(_), _) => turned,
+            (None, Some(scale)) => scale < 0.0,
+            (None, None) => east,
+        };
+        self.parameters.retain(|(name, _)| !["xscale", "yscale", "xyplanerotation"].contains(&&**name));
+        self.method = if north { "krovak_north" } else { KROVAK }.into();
     }
 
     fn own(&self, name: &str) -> Option<f64> {
@@ -196,6 +224,8 @@ impl Projection {
         let names = self.parameters.iter().chain(&other.parameters).map(|(name, _)| name.as_str());
         names.into_iter().find_map(|name| {
             let [a, b] = [self.value(name), other.value(name)];
+            // Whole turns do not count.
+            let turn = if matches!(name, AZIMUTH | GRID_ANGLE | LONGITUDE) { 360.0 } else { f64::INFINITY };
             // A millimetre, a ten-millionth of a degree (1 cm), or a billionth of the scale.
             let small = match name {
                 SCALE => 1e-9,
@@ -203,7 +233,9 @@ impl Projection {
                 _ => 1e-7,
             };
             let round = |value: f64| (value * 1e10).round() / 1e10;
-            ((a - b).abs() > small).then(|| format!("{name} {} against {}", round(a), round(b)))
+            let apart = (a - b).abs();
+            (apart.min((apart - turn).abs()) > small)
+                .then(|| format!("{name} {} against {}", round(a), round(b)))
         })
     }
 }

@@ -182,14 +182,14 @@ fn the_prj_of_a_shapefile_is_compared_and_never_dropped() {
             "{message}"
         );
         assert!(on(prj, Some("EPSG:32633")).unwrap_err().contains("datum D_ETRS_1989 against WGS_1984"));
-        assert!(on(prj, None).unwrap()[0].contains("the terrain says no system"));
+        assert!(on(prj, None).unwrap()[0].text().contains("the terrain says no system"));
     }
     let message = on("+proj=utm +zone=33 +ellps=GRS80", Some("EPSG:25832")).unwrap_err();
     assert!(message.contains("gdalsrsinfo -o wkt1_esri \"+proj=utm +zone=33 +ellps=GRS80\" >"), "{message}");
     let own = ZONE_33.replace("D_ETRS_1989", "D_Mine");
     let notes = on(&own, Some("EPSG:25833")).unwrap();
-    assert!(notes[0].contains("could not be decided (datum D_Mine against"), "{notes:?}");
-    assert!(on("", Some("EPSG:25833")).unwrap()[0].contains("says no coordinate reference system"));
+    assert!(notes[0].text().contains("could not be decided (datum D_Mine against"), "{notes:?}");
+    assert!(on("", Some("EPSG:25833")).unwrap()[0].text().contains("says no coordinate reference system"));
     let feet = ZONE_33.replace("UNIT[\"Meter\",1.0]", "UNIT[\"Foot\",0.3048]");
     assert!(on(&feet, None).unwrap_err().contains("which is not in metres"));
 }
@@ -214,7 +214,7 @@ fn deleted_rows_and_shapes_that_are_null_are_left_out_and_counted() {
     };
     let (height, notes) = with(&[" 1,5", "*2", " 3"]).unwrap();
     assert_eq!((height[11], height[13], height[15]), (1.5, 0.0, 3.0));
-    assert!(notes[0].contains("1 features without a shape or marked deleted"), "{notes:?}");
+    assert!(notes[0].text().contains("1 features without a shape or marked deleted"), "{notes:?}");
     assert!(with(&["*1", " 2", " "]).unwrap_err().contains("feature 3: thick is not given (NULL)"));
     assert!(with(&[" 1", " **", " 2"]).unwrap_err().contains("feature 2: thick is not given (NULL)"));
     assert!(with(&[" 1", " x", " 2"]).unwrap_err().contains("feature 2: thick = `x` is not a thickness"));
