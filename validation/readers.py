@@ -100,7 +100,7 @@ def cure(answer, path, after):
         done = subprocess.run(command, shell=True, cwd=path.parent, capture_output=True, text=True, check=False)
         if done.returncode:
             raise AssertionError(f"the cure fails: {command}: {done.stderr or done.stdout}")
-    written = [path.parent / word for word in words if word.endswith((".tif", ".shp", ".geojson", ".asc"))]
+    written = [path.parent / word for word in words if word.endswith((".tif", ".shp", ".geojson", ".asc", ".prj"))]
     last = written[0] if words[0].startswith("ogr") else written[-1]
     return after(last)
 
@@ -137,8 +137,8 @@ def masked(path, internal):
     return path
 
 
-def alpha(path, bands=1):
-    values = numpy.stack([ground()] * bands + [numpy.full((ROWS, COLUMNS), 255, "float32")])
+def alpha(path, bands=1, kind="uint16"):
+    values = numpy.stack([ground()] * bands + [numpy.full((ROWS, COLUMNS), 255)]).astype(kind)
     values[-1, 2:8, 2:12] = 0
     tiff(path, values)
     with rasterio.open(path, "r+") as file:
@@ -178,6 +178,18 @@ def south_first():
     return ground()[::-1].astype("float64")
 
 
+def world(path):
+    tiff(path, crs=None, transform=None)
+    path.with_suffix(".tfw").write_text("5\n0\n0\n-5\n500002.5\n5199997.5\n")
+    return path
+
+
+def transparent():
+    values = ground()
+    values[2:8, 2:12] = numpy.nan
+    return values[::-1]
+
+
 def rasters():
     for kind in ["uint8", "int16", "uint16", "int32", "float32", "float64"]:
         raster(f"{kind}, nodata 7", lambda p: tiff(p, holes(7, kind), nodata=7))
@@ -196,6 +208,7 @@ def rasters():
     raster("internal mask", lambda p: masked(p, True))
     raster("mask file", lambda p: masked(p, False))
     raster("alpha band", alpha)
+    raster("alpha band of floats, which GDAL leaves to the user", lambda p: alpha(p, 1, "float32"), wanted=transparent)
     raster("three bands and alpha", lambda p: alpha(p, 3), refused="-b 1 -mask 4")
     raster("two bands", lambda p: tiff(p, numpy.stack([ground()] * 2)), refused="gdal_translate -b 1")
     raster("sidecar nodata", lambda p: sidecar(tiff(p, holes(0)), "<NoDataValue>0</NoDataValue>"))
@@ -217,6 +230,10 @@ def rasters():
     raster("web map", lambda p: tiff(p, crs="EPSG:3857", transform=from_origin(1250000, 6000000, 5, 5)), refused="1/cos(latitude)")
     raster("degrees", lambda p: tiff(p, crs="EPSG:4326", transform=from_origin(11, 47, 1e-4, 1e-4)), refused="in degrees")
     raster("system by parameters", lambda p: tiff(p, crs="+proj=lcc +lat_1=46 +lat_2=49 +lat_0=47.5 +lon_0=13.333 +x_0=400000 +y_0=400000 +ellps=bessel +units=m"))
+    raster("world file", world, refused="gdal_translate -a_srs")
+    raster("nodata -32768 undeclared", lambda p: tiff(p, holes(-32768)), refused="gdal_edit.py -a_nodata -32768")
+    raster("another system than the key", tiff, crs=["EPSG:31287"], refused="gdalwarp -t_srs EPSG:31287")
+    raster("complex numbers", lambda p: tiff(p, ground().astype("complex64")), refused="gdal_translate -ot Float32")
     raster("rotated", lambda p: tiff(p, transform=PLACE @ Affine.rotation(10)), refused="gdalwarp")
     raster("not square", lambda p: tiff(p, transform=from_origin(500000, 5200000, 5, 6)), refused="gdalwarp -tr 5 5")
     raster("south first", lambda p: tiff(p, transform=Affine(5, 0, 500000, 0, 5, 5199800)))
@@ -287,7 +304,8 @@ def release(name, make, refused=None):
             answer = granflow("release", path, dem, "d")
             if "refused" in answer:
                 assert refused and refused in answer["refused"], answer["refused"]
-                wanted = None if "prj" in refused or "NULL" in refused or "thickness" in refused else volume(path)
+                # Only what is read by fiona as it stands has a volume to compare with.
+                wanted = volume(path) if refused in ("datum", "longitude of origin", "degrees") else None
                 again = lambda last: granflow("release", path if last.suffix == ".prj" else last, dem, "d")
                 outcome = cure(answer, path, lambda last: again(last))
                 if isinstance(outcome, dict):
@@ -330,7 +348,33 @@ def releases():
     for code, words in [(23032, "datum"), (32632, "datum"), (31467, "datum"), (25833, "longitude of origin"), (4258, "degrees")]:
         release(f"EPSG:{code} on EPSG:25832", moved(code), refused=words)
     release("zone 33 with a vertical system", moved(25833, ',VERTCS["E",VDATUM["E"],UNIT["Meter",1.0]]'), refused="longitude of origin")
+    release("a ring that crosses itself", bow_tie, refused="-makevalid")
+    release("GeoJSON with a code", lambda p: named(p, "urn:ogc:def:crs:EPSG::25832"))
+    release("GeoJSON with a name that is not understood", lambda p: named(p, "Here"), refused="`crs`")
+    release("a geopackage", package, refused="ogr2ogr release.geojson")
     release("PROJ text in the .prj", lambda p: with_prj(shapes(p, two), "+proj=utm +zone=32 +ellps=GRS80"), refused="release.prj")
+
+
+def bow_tie(path):
+    ring = [(500050.0, 5199850.0), (500090.0, 5199890.0), (500090.0, 5199850.0), (500050.0, 5199890.0), (500050.0, 5199850.0)]
+    return shapes(path, [({"type": "Polygon", "coordinates": [ring]}, 1.5)])
+
+
+def named(path, name):
+    """A GeoJSON file whose `crs` has this name."""
+    path = path.with_suffix(".geojson")
+    features = [{"type": "Feature", "geometry": square(500050.0), "properties": {"d": 1.5}}]
+    system = {"type": "name", "properties": {"name": name}}
+    path.write_text(json.dumps({"type": "FeatureCollection", "crs": system, "features": features}))
+    return path
+
+
+def package(path):
+    path = path.with_suffix(".gpkg")
+    schema = {"geometry": "Polygon", "properties": {"d": "float"}}
+    with fiona.open(path, "w", driver="GPKG", crs="EPSG:25832", schema=schema) as file:
+        file.write({"type": "Feature", "geometry": square(500050.0), "properties": {"d": 1.5}})
+    return path
 
 
 def systems():
@@ -351,7 +395,7 @@ def systems():
             wanted.append((code, version, True))
     for one, other in zip(codes, codes[1:]):
         same = pyproj.CRS.from_epsg(one).equals(pyproj.CRS.from_epsg(other), ignore_axis_order=True)
-        pairs.append(f"EPSG:{one}\t{pyproj.CRS.from_epsg(other).to_wkt('WKT1_GDAL')}")
+        pairs.append(f"EPSG:{one}\t{pyproj.CRS.from_epsg(other).to_wkt()}")
         wanted.append((one, other, same))
     answers = granflow("systems", stdin="\n".join(pair.replace("\n", " ") for pair in pairs) + "\n")
     counts = {}
@@ -362,8 +406,8 @@ def systems():
             results.append((f"EPSG:{code} and EPSG:{other}", "FAILED: two systems taken for one"))
     for (kind, answer), count in sorted(counts.items()):
         print(f"{count:5} pairs of {kind}: {answer}")
-    refused = sum(count for (kind, answer), count in counts.items() if kind == "one system" and answer != "same")
-    outcome = "equal" if refused < 0.1 * len(codes) * 3 else f"FAILED: {refused} of {3 * len(codes)} not known to be one"
+    refused = sum(count for (kind, answer), count in counts.items() if kind == "one system" and answer == "different")
+    outcome = "equal" if refused < 0.01 * len(wanted) else f"FAILED: {refused} of {len(wanted)} taken for two"
     results.append(("systems", outcome))
 
 
@@ -371,7 +415,7 @@ rasters()
 releases()
 systems()
 for name, outcome in results:
-    print(f"{name:40} {outcome}")
+    print(f"{name:52} {outcome}")
 failed = [name for name, outcome in results if outcome.startswith("FAILED")]
 print(f"{len(results)} variants, {len(failed)} failed")
 sys.exit(bool(failed))

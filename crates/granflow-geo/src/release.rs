@@ -102,7 +102,7 @@ impl Layer {
         if self.left_out > 0 {
             let count = self.left_out;
             notes.push(Remark::Note(format!(
-                "{name}: {count} features without a shape or marked deleted were left out"
+                "{name}: left out {count} of its features, without a shape or marked deleted"
             )));
         }
         match (&self.crs, &template.crs) {

@@ -106,6 +106,9 @@ impl Crs {
         {
             return Comparison::Same;
         }
+        if self.wkt.is_some() && self.wkt == other.wkt {
+            return Comparison::Same;
+        }
         let (Some(own), Some(others)) = (self.system(), other.system()) else {
             return match codes {
                 [Some(a), Some(b)] if a == b => Comparison::Same,
@@ -126,6 +129,18 @@ impl Crs {
             Some(code) if name.is_empty() => format!("EPSG:{code}"),
             Some(code) => format!("EPSG:{code} ({name})"),
             None => self.to_string(),
+        }
+    }
+
+    /// What GDAL's programs take to reproject to the system of a terrain, and what to know about that.
+    pub(crate) fn target(terrain: Option<&Crs>) -> [String; 2] {
+        match terrain.and_then(|crs| crs.epsg) {
+            Some(code) => [format!("EPSG:{code}"), String::new()],
+            None => [
+                "terrain.prj".to_owned(),
+                "\n(terrain.prj holds the system of the terrain: gdalsrsinfo -o wkt1_esri DEM > terrain.prj)"
+                    .to_owned(),
+            ],
         }
     }
 

@@ -183,7 +183,7 @@ pub enum RasterError {
     #[error(
         "{path} is in {own}, the terrain of the case in {wanted} ({proof}); correct crs in the case, or \
          reproject with\n  \
-         gdalwarp -t_srs {target} {path} {stem}_reprojected.tif", path = path.display(), stem = stem(path)
+         gdalwarp -t_srs {} {path} {stem}_reprojected.tif{}", target[0], target[1], path = path.display(), stem = stem(path)
     )]
     CrsMismatch {
         /// The file.
@@ -194,8 +194,8 @@ pub enum RasterError {
         wanted: String,
         /// What differs.
         proof: String,
-        /// What `gdalwarp -t_srs` takes.
-        target: String,
+        /// What `gdalwarp -t_srs` takes, and what to know about that.
+        target: Box<[String; 2]>,
     },
 }
 
@@ -242,7 +242,7 @@ impl RasterError {
     }
 
     pub(super) fn mismatch(path: &Path, own: &Crs, wanted: &Crs, proof: String) -> RasterError {
-        let target = wanted.epsg.map_or("TERRAIN.prj".to_string(), |code| format!("EPSG:{code}"));
+        let target = Box::new(Crs::target(Some(wanted)));
         let (own, wanted) = (own.describe(), wanted.describe());
         RasterError::CrsMismatch { path: path.into(), own, wanted, proof, target }
     }

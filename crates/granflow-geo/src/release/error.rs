@@ -90,7 +90,7 @@ pub enum ReleaseError {
     /// The release and the terrain are in different coordinate reference systems.
     #[error(
         "{path} is in {own}, the terrain in {terrain} ({proof}); reproject the polygons with\n  \
-         ogr2ogr -t_srs {target} release_reprojected.shp {path}", path = path.display()
+         ogr2ogr -t_srs {} release_reprojected.shp {path}{}", target[0], target[1], path = path.display()
     )]
     System {
         /// The file.
@@ -101,8 +101,8 @@ pub enum ReleaseError {
         terrain: String,
         /// What differs.
         proof: String,
-        /// What `ogr2ogr -t_srs` takes.
-        target: String,
+        /// What `ogr2ogr -t_srs` takes, and what to know about that.
+        target: Box<[String; 2]>,
     },
     /// The release is not in metres, and the terrain says no system.
     #[error(
@@ -163,7 +163,8 @@ pub enum ReleaseError {
 
 impl ReleaseError {
     pub(super) fn system(path: &Path, own: &Crs, terrain: &Crs, proof: String) -> ReleaseError {
-        let (own, target, terrain) = (own.describe(), target(Some(terrain)), terrain.describe());
+        let (own, target, terrain) =
+            (own.describe(), Box::new(Crs::target(Some(terrain))), terrain.describe());
         ReleaseError::System { path: path.into(), own, terrain, proof, target }
     }
 
@@ -194,8 +195,8 @@ impl ReleaseError {
         let within = (0..2).all(|k| release[k] >= terrain[k] && release[k + 2] <= terrain[k + 2]);
         let degrees =
             release[0] >= -360.0 && release[2] <= 360.0 && release[1] >= -90.0 && release[3] <= 90.0;
-        let reproject =
-            format!("ogr2ogr -t_srs {} reprojected.shp {}", target(template.crs.as_ref()), path.display());
+        let [target, about] = Crs::target(template.crs.as_ref());
+        let reproject = format!("ogr2ogr -t_srs {target} reprojected.shp {}{about}", path.display());
         let cure = match (apart, degrees) {
             (true, true) => format!("the release looks like degrees; reproject it with\n  {reproject}"),
             (true, false) => format!(
@@ -215,8 +216,4 @@ impl ReleaseError {
         let share = if lost > 1.0 - 1e-9 { "all".to_string() } else { format!("{:.2} %", 100.0 * lost) };
         ReleaseError::Outside { path: path.into(), share, place, release, terrain, cure }
     }
-}
-
-fn target(crs: Option<&Crs>) -> String {
-    crs.and_then(|crs| crs.epsg).map_or("TERRAIN.prj".to_string(), |code| format!("EPSG:{code}"))
 }

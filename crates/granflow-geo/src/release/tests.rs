@@ -195,6 +195,22 @@ fn the_prj_of_a_shapefile_is_compared_and_never_dropped() {
 }
 
 #[test]
+fn a_bow_tie_without_area_is_refused_beside_sound_polygons() {
+    let folder = tempfile::tempdir().unwrap();
+    let bow =
+        [(1.0, 1.0), (3.0, 3.0), (3.0, 1.0), (1.0, 3.0), (1.0, 1.0)].map(|(x, y)| Point::new(x, y)).to_vec();
+    let rings = vec![PolygonRing::Outer(corners(4.0, 4.0, 7.0, 6.0)), PolygonRing::Outer(bow)];
+    let message =
+        polygons(&shapefile_of(folder.path(), rings, None), &ONE, &ground()).unwrap_err().to_string();
+    assert!(message.contains("feature 1") && message.contains("-makevalid"), "{message}");
+    let mut odd = corners(1.0, 1.0, 3.0, 3.0);
+    odd[1].x = f64::NAN;
+    let path = shapefile_of(folder.path(), vec![PolygonRing::Outer(odd)], None);
+    let message = polygons(&path, &ONE, &ground()).unwrap_err().to_string();
+    assert!(message.contains("a corner of it is not a number"), "{message}");
+}
+
+#[test]
 fn deleted_rows_and_shapes_that_are_null_are_left_out_and_counted() {
     use super::table::tests::table;
     let folder = tempfile::tempdir().unwrap();
@@ -214,7 +230,7 @@ fn deleted_rows_and_shapes_that_are_null_are_left_out_and_counted() {
     };
     let (height, notes) = with(&[" 1,5", "*2", " 3"]).unwrap();
     assert_eq!((height[11], height[13], height[15]), (1.5, 0.0, 3.0));
-    assert!(notes[0].text().contains("1 features without a shape or marked deleted"), "{notes:?}");
+    assert!(notes[0].text().contains("left out 1 of its features"), "{notes:?}");
     assert!(with(&["*1", " 2", " "]).unwrap_err().contains("feature 3: thick is not given (NULL)"));
     assert!(with(&[" 1", " **", " 2"]).unwrap_err().contains("feature 2: thick is not given (NULL)"));
     assert!(with(&[" 1", " x", " 2"]).unwrap_err().contains("feature 2: thick = `x` is not a thickness"));

@@ -132,6 +132,10 @@ fn shapefile(
             Shape::NullShape => continue,
             _ => return Err(no_polygon(path, number, &kind)),
         };
+        if !rings.iter().flatten().all(|corner| corner.x.is_finite() && corner.y.is_finite()) {
+            let problem = "a corner of it is not a number; draw it again, or delete it".to_owned();
+            return Err(ReleaseError::Shape { path: path.into(), feature: number, problem });
+        }
         features.push(Feature { number, polygons: nested(rings), attributes });
     }
     let left_out = all - features.len();
@@ -145,7 +149,8 @@ fn line<P>(points: &[P], place: impl Fn(&P) -> (f64, f64)) -> LineString {
 /// Polygons with holes from loose rings by how deep they lie in one another, whatever their order and direction.
 fn nested(rings: Vec<LineString>) -> Vec<Polygon> {
     let mut discs: Vec<Polygon> = rings.into_iter().map(|ring| Polygon::new(ring, Vec::new())).collect();
-    discs.retain(|disc| disc.unsigned_area() > 0.0);
+    // A ring without area may be one that crosses itself: that is for the caller to refuse.
+    discs.retain(|disc| !disc.exterior().0.is_empty());
     discs.sort_by(|a, b| b.unsigned_area().total_cmp(&a.unsigned_area()));
     let mut polygons: Vec<Polygon> = Vec::new();
     let mut depths = Vec::new();

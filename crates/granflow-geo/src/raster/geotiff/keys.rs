@@ -8,6 +8,9 @@ use geotiff_reader::geokeys::GeoKeyDirectory;
 pub(super) const CITATION: u16 = 1026;
 const GEODETIC_SYSTEM: u16 = 2048;
 const GEODETIC_DATUM: u16 = 2050;
+const AXIS: u16 = 2057;
+const INVERSE_FLATTENING: u16 = 2059;
+const MERIDIAN: u16 = 2061;
 pub(super) const PROJECTED_SYSTEM: u16 = 3072;
 pub(super) const PROJECTED_CITATION: u16 = 3073;
 const METHOD: u16 = 3075;
@@ -80,11 +83,10 @@ pub(super) fn horizontal(keys: &GeoKeyDirectory) -> Horizontal {
     {
         return Horizontal::Known(embedded);
     }
-    let code = |key| keys.get_short(key).filter(|code| !matches!(*code, 0 | USER_DEFINED)).map(u32::from);
     let model = keys.get_short(MODEL);
     let coded = match model {
-        Some(GEOGRAPHIC) => code(GEODETIC_SYSTEM),
-        _ => code(PROJECTED_SYSTEM),
+        Some(GEOGRAPHIC) => code(keys, GEODETIC_SYSTEM),
+        _ => code(keys, PROJECTED_SYSTEM),
     };
     match coded.and_then(|code| Crs::coded(code, None)) {
         Some(crs) => Horizontal::Known(crs),
@@ -108,28 +110,46 @@ pub(super) fn heights(keys: &GeoKeyDirectory) -> Option<Heights> {
 
 /// Metres of the unit of the coordinates, where the keys say it.
 pub(super) fn unit(keys: &GeoKeyDirectory) -> Option<f64> {
-    let size = || keys.get_double(LINEAR_UNIT_SIZE)?.first().copied();
     match keys.get_short(LINEAR_UNIT)? {
-        USER_DEFINED => size(),
+        USER_DEFINED => number(keys, LINEAR_UNIT_SIZE),
         code => register::length(u32::from(code)),
     }
 }
 
-/// A system by method and parameters over a geographic system that has a code.
+/// A system by method and parameters.
 fn by_parameters(keys: &GeoKeyDirectory) -> Option<Crs> {
-    let base = keys.get_short(GEODETIC_SYSTEM)?;
-    let same_datum = keys.get_short(GEODETIC_DATUM).is_none_or(|datum| datum == USER_DEFINED);
-    let base = well_known_text(u32::from(base)).filter(|text| text.starts_with("GEOGCS") && same_datum)?;
     let (_, method) = METHODS.iter().find(|(code, _)| Some(*code) == keys.get_short(METHOD))?;
-    let value = |key: u16| keys.get_double(key).and_then(|values| values.first());
-    let parameters: String = PARAMETERS
-        .iter()
-        .filter_map(|(key, name)| value(*key).map(|value| format!("PARAMETER[\"{name}\",{value}],")))
-        .collect();
+    let parameter =
+        |(key, name): &(u16, &str)| Some(format!("PARAMETER[\"{name}\",{}],", number(keys, *key)?));
+    let parameters: String = PARAMETERS.iter().filter_map(parameter).collect();
     let name = keys.get_ascii(PROJECTED_CITATION).or(keys.get_ascii(CITATION)).unwrap_or("unnamed");
     let name = name.split('|').next().unwrap_or(name).replace('"', "'");
-    let unit = unit(keys)?;
+    let (base, unit) = (base(keys)?, unit(keys)?);
     let text =
         format!("PROJCS[\"{name}\",{base},PROJECTION[\"{method}\"],{parameters}UNIT[\"unit\",{unit}]]");
     Crs::parse(&text).ok()
+}
+
+/// The geographic system below a projected one: by its code, or by datum and ellipsoid.
+fn base(keys: &GeoKeyDirectory) -> Option<String> {
+    if let Some(text) = code(keys, GEODETIC_SYSTEM).and_then(well_known_text) {
+        return Some(text).filter(|text| text.starts_with("GEOGCS"));
+    }
+    let datum =
+        code(keys, GEODETIC_DATUM).map(|code| format!(",AUTHORITY[\"EPSG\",\"{code}\"]")).unwrap_or_default();
+    let (axis, flattening) = (number(keys, AXIS)?, number(keys, INVERSE_FLATTENING)?);
+    let meridian = number(keys, MERIDIAN).unwrap_or(0.0);
+    Some(format!(
+        "GEOGCS[\"unknown\",DATUM[\"unknown\",SPHEROID[\"unknown\",{axis},{flattening}]{datum}],\
+         PRIMEM[\"unknown\",{meridian}],UNIT[\"degree\",0.0174532925199433]]"
+    ))
+}
+
+/// A code of the register, where a key holds one.
+fn code(keys: &GeoKeyDirectory, key: u16) -> Option<u32> {
+    keys.get_short(key).filter(|code| !matches!(*code, 0 | USER_DEFINED)).map(u32::from)
+}
+
+fn number(keys: &GeoKeyDirectory, key: u16) -> Option<f64> {
+    keys.get_double(key)?.first().copied()
 }

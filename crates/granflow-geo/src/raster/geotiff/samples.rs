@@ -63,17 +63,17 @@ fn alpha(path: &Path, file: &GeoTiffFile, ifd: &Ifd) -> Result<Option<usize>, Ra
 /// The values of one band.
 fn band(path: &Path, file: &GeoTiffFile, ifd: &Ifd, index: usize) -> Result<Vec<f64>, RasterError> {
     let error = |problem: String| RasterError::geotiff(path, problem);
-    let layout = ifd.raster_layout().map_err(|e| error(e.to_string()))?;
+    let other = |found: String| {
+        error(format!("{found}; convert with\n  gdal_translate -ot Float32 {} float.tif", path.display()))
+    };
+    let layout = ifd.raster_layout().map_err(|e| other(e.to_string()))?;
     macro_rules! read {
         ($($format:literal, $bits:pat => $sample:ty;)*) => {
             match (layout.sample_format, layout.bits_per_sample) {
                 $(($format, $bits) => file
                     .read_band::<$sample>(index)
                     .map(|band| band.into_iter().map(|value| value as f64).collect::<Vec<f64>>()),)*
-                (format, bits) => {
-                    let cure = format!("gdal_translate -ot Float32 {} float.tif", path.display());
-                    return Err(error(format!("samples of format {format} with {bits} bits; convert with\n  {cure}")));
-                }
+                (format, bits) => return Err(other(format!("samples of format {format} with {bits} bits"))),
             }
         };
     }
