@@ -15,7 +15,7 @@ pub use vector::Layer;
 use crate::Remark;
 use crate::raster::{Comparison, Crs, Raster, uncertain};
 use crate::terrain::Terrain;
-use geo::{Area, BooleanOps, BoundingRect, Polygon, Validation, unary_union};
+use geo::{Area, BooleanOps, BoundingRect, Contains, Line, Point, Polygon, Rect, Validation, unary_union};
 use rstar::primitives::{GeomWithData, Rectangle};
 use rstar::{AABB, RTree};
 use std::collections::BTreeMap;
@@ -281,9 +281,30 @@ fn thickness_of(path: &Path, feature: &Feature, thickness: &Thickness) -> Result
 fn overlap(k: usize, polygons: &[Polygon], boxes: &Boxes) -> Vec<Polygon> {
     let Some(own) = polygons[k].bounding_rect() else { return Vec::new() };
     let envelope = AABB::from_corners(own.min().into(), own.max().into());
-    let near = boxes.locate_in_envelope_intersecting(&envelope).map(|found| found.data);
-    let near: Vec<&Polygon> = near.filter(|other| *other < k).map(|other| &polygons[other]).collect();
-    if near.is_empty() { Vec::new() } else { polygons[k].intersection(&unary_union(near)).0 }
+    let mut cutting = Vec::new();
+    for other in
+        boxes.locate_in_envelope_intersecting(&envelope).map(|found| found.data).filter(|other| *other < k)
+    {
+        match holds(&polygons[other], own) {
+            Some(true) => return vec![polygons[k].clone()],
+            Some(false) => {}
+            None => cutting.push(&polygons[other]),
+        }
+    }
+    if cutting.is_empty() { Vec::new() } else { polygons[k].intersection(&unary_union(cutting)).0 }
+}
+
+/// Whether a polygon holds all of a rectangle or nothing of it, `None` where an edge comes near: far cheaper to find than a cut
+/// where a large polygon holds many small ones.
+fn holds(polygon: &Polygon, rect: Rect) -> Option<bool> {
+    let rings = std::iter::once(polygon.exterior()).chain(polygon.interiors());
+    let near = |edge: Line| {
+        let apart = |a: f64, b: f64, low: f64, high: f64| a.max(b) < low || a.min(b) > high;
+        let (from, to) = (edge.start, edge.end);
+        !apart(from.x, to.x, rect.min().x, rect.max().x) && !apart(from.y, to.y, rect.min().y, rect.max().y)
+    };
+    let clear = !rings.flat_map(|ring| ring.lines()).any(near);
+    clear.then(|| polygon.contains(&Point::from(rect.center())))
 }
 
 /// The bounding boxes of polygons with their numbers, for finding those near a place.

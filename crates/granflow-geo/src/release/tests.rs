@@ -195,6 +195,17 @@ fn the_prj_of_a_shapefile_is_compared_and_never_dropped() {
 }
 
 #[test]
+fn what_a_thicker_polygon_holds_adds_nothing_and_its_hole_is_no_part_of_it() {
+    let around = feature(&[ring(0.0, 0.0, 8.0, 7.0), ring(3.0, 3.0, 6.0, 6.0)], r#"{"d":2}"#);
+    let squares = [(1.0, 1.0), (4.0, 4.0), (8.5, 1.0)];
+    let small = squares.map(|(x, y)| feature(&[ring(x, y, x + 1.0, y + 1.0)], r#"{"d":1}"#));
+    let all = collection(&[&[around], &small[..]].concat(), "");
+    let height = released(&all, &Thickness::Attribute("d".into()), &ground()).unwrap();
+    assert_eq!((height[11], height[44], height[33]), (2.0, 1.0, 0.0));
+    assert!((height.iter().sum::<f64>() - (2.0 * (56.0 - 9.0) + 1.0 + 1.0)).abs() < 1e-12);
+}
+
+#[test]
 fn a_bow_tie_without_area_is_refused_beside_sound_polygons() {
     let folder = tempfile::tempdir().unwrap();
     let bow =
