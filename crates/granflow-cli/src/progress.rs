@@ -1,11 +1,15 @@
 //! Progress on standard error: a bar on a terminal, plain lines every few seconds elsewhere.
 
 use std::io::{self, IsTerminal, Write};
+use std::sync::mpsc;
+use std::thread::JoinHandle;
 use std::time::{Duration, Instant};
 
 use granflow::Words;
 use granflow::run::Run;
 
+/// Before the first line about setting up.
+const SILENT: Duration = Duration::from_secs(2);
 /// Between two plain lines.
 const PLAIN: Duration = Duration::from_secs(5);
 /// Between two looks at the clock that redraw the bar.
@@ -72,6 +76,41 @@ enum Shown {
     Bar,
     Lines,
     Nowhere,
+}
+
+/// Says every few seconds that a case is being set up, until it is dropped.
+pub struct Waiting {
+    ended: Option<mpsc::Sender<()>>,
+    teller: Option<JoinHandle<()>>,
+}
+
+impl Waiting {
+    /// Tells nothing if `quiet`, nor in the first two seconds.
+    pub fn begin(quiet: bool) -> Self {
+        if quiet {
+            return Self { ended: None, teller: None };
+        }
+        let (ended, end) = mpsc::channel();
+        let tell = move || {
+            let start = Instant::now();
+            let mut pause = SILENT;
+            while end.recv_timeout(pause) == Err(mpsc::RecvTimeoutError::Timeout) {
+                eprintln!("reading terrain and releases, {}", duration(start.elapsed()));
+                pause = PLAIN;
+            }
+        };
+        Self { ended: Some(ended), teller: Some(std::thread::spawn(tell)) }
+    }
+}
+
+impl Drop for Waiting {
+    fn drop(&mut self) {
+        self.ended.take();
+        if let Some(teller) = self.teller.take() {
+            // It only writes: nothing is lost if it could not.
+            teller.join().ok();
+        }
+    }
 }
 
 /// Shows a run's status while it works.

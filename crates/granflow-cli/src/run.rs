@@ -11,7 +11,7 @@ use granflow::session::Options;
 
 use crate::failure::{Failure, print};
 use crate::interrupt;
-use crate::progress::Progress;
+use crate::progress::{Progress, Waiting};
 
 /// What the command line says about a run.
 #[derive(Debug, Clone, Default)]
@@ -58,13 +58,21 @@ fn line(finished: &Finished) -> String {
 pub fn compute(case: Checked, options: &RunOptions) -> Result<Finished, Failure> {
     let stop = interrupt::listen()?;
     let mut progress = Progress::new(options.quiet, case.plan().ends.time);
+    let quiet = options.quiet;
     let options = Options {
         directory: options.directory(case.plan().source_name()),
         threads: options.threads.map_or(0, NonZeroUsize::get),
         resume: options.resume,
         command: std::env::args().collect::<Vec<_>>().join(" "),
     };
-    let finished = case.compute(&options, stop, &mut |run: &dyn Run| progress.show(run));
+    let mut waiting = Some(Waiting::begin(quiet));
+    let finished = case.compute(&options, stop, &mut |run: &dyn Run| {
+        if waiting.take().is_some() {
+            run.plane().domain.remarks().iter().for_each(|remark| eprintln!("{remark}"));
+        }
+        progress.show(run);
+    });
+    drop(waiting);
     progress.finish();
     let finished = finished?;
     let summary = &finished.summary;

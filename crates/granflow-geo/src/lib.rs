@@ -6,4 +6,7 @@
 mod cells;
 pub mod raster;
 pub mod release;
+mod remark;
 pub mod terrain;
+
+pub use remark::Remark;

@@ -3,14 +3,22 @@
 
 mod ascii;
 mod crs;
+mod declared;
 mod error;
 mod geotiff;
+mod projection;
+mod register;
 mod resample;
+mod system;
 mod wkt;
 
 pub use crs::{Crs, CrsError, well_known_text};
 pub use error::RasterError;
+pub use system::Comparison;
 
+use declared::Declared;
+
+use crate::Remark;
 use std::io::Read;
 use std::path::{Path, PathBuf};
 
@@ -36,10 +44,59 @@ pub struct Raster {
     pub crs: Option<Crs>,
 }
 
+/// A raster as it was read, and what the reader decided: units converted, systems that could not be compared.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Reading {
+    /// Values in metres.
+    pub raster: Raster,
+    /// One sentence each, with the name of the file.
+    pub notes: Vec<Remark>,
+}
+
+impl Reading {
+    /// Reads a file as [`Raster::read_in`] does.
+    ///
+    /// # Errors
+    /// As [`Raster::read_in`].
+    pub fn of(path: &Path, crs: Option<&Crs>) -> Result<Reading, RasterError> {
+        let mut magic = [0; 4];
+        let file = std::fs::File::open(path).and_then(|mut file| file.read(&mut magic));
+        file.map_err(|source| RasterError::Io { path: path.into(), source })?;
+        let beside = Declared::beside(path)?;
+        let mut notes = Vec::new();
+        let (raster, declared) = if is_tiff(&magic) {
+            geotiff::read(path, beside, crs, &mut notes)?
+        } else {
+            ascii::read(path, beside, crs, &mut notes)?
+        };
+        Reading::in_metres(path, raster, declared, crs, notes)
+    }
+
+    /// The raster with what is declared of its values applied, checked.
+    fn in_metres(
+        path: &Path,
+        raster: Raster,
+        declared: Declared,
+        given: Option<&Crs>,
+        mut notes: Vec<Remark>,
+    ) -> Result<Reading, RasterError> {
+        let mut raster = raster.checked(path)?;
+        let systems = raster.crs.iter().chain(given);
+        let heights = declared.heights.or(systems.filter_map(Crs::heights).next());
+        let [factor, offset] = Declared { heights, ..declared }.to_metres(path, &mut notes)?;
+        if factor != 1.0 || offset != 0.0 {
+            raster.values.iter_mut().for_each(|value| *value = *value * factor + offset);
+        }
+        Ok(Reading { raster, notes })
+    }
+}
+
 impl Raster {
     /// Reads a GeoTIFF (any sample type and compression, BigTIFF) or an ESRI ASCII grid, told apart by content.
     ///
-    /// The CRS comes from the GeoTIFF keys or from the `.prj` file beside an ASCII grid.
+    /// What is said to be absent is: nodata, masks, alpha 0, blocks of a sparse file. Scale, offset and units of the values
+    /// are applied. All of that, and the CRS, is taken from the file, the `.aux.xml` and `.msk` files beside it, and the `.prj`
+    /// file beside an ASCII grid.
     ///
     /// # Errors
     /// Every [`RasterError`] but those of writing; each names the file and the cure.
@@ -52,26 +109,23 @@ impl Raster {
     /// # Errors
     /// As [`Raster::read`]; also [`RasterError::CrsMismatch`] when the file's own CRS contradicts the given one.
     pub fn read_in(path: &Path, crs: Option<&Crs>) -> Result<Raster, RasterError> {
-        let mut magic = [0; 4];
-        let file = std::fs::File::open(path).and_then(|mut file| file.read(&mut magic));
-        file.map_err(|source| RasterError::Io { path: path.into(), source })?;
-        let raster = if is_tiff(&magic) { geotiff::read(path, crs)? } else { ascii::read(path, crs)? };
-        raster.checked(path)
+        Reading::of(path, crs).map(|reading| reading.raster)
     }
 
     /// As [`Raster::read_in`], from the bytes of a file that is called `name` in messages.
     ///
-    /// What a `.prj` file beside an ASCII grid says is passed as `crs`.
+    /// Nothing beside it is read: what a `.prj` file says is passed as `crs`.
     ///
     /// # Errors
     /// As [`Raster::read_in`].
     pub fn from_bytes(name: &Path, bytes: Vec<u8>, crs: Option<&Crs>) -> Result<Raster, RasterError> {
-        let raster = if is_tiff(&bytes) {
-            geotiff::from_bytes(name, bytes, crs)?
+        let mut notes = Vec::new();
+        let (raster, declared) = if is_tiff(&bytes) {
+            geotiff::from_bytes(name, bytes, crs, &mut notes)?
         } else {
-            ascii::from_bytes(name, &bytes, None, crs)?
+            ascii::from_bytes(name, &bytes, (None, Declared::default()), crs, &mut notes)?
         };
-        raster.checked(name)
+        Reading::in_metres(name, raster, declared, crs, notes).map(|reading| reading.raster)
     }
 
     /// A raster of the same cells and CRS with other values, or none.
@@ -127,11 +181,7 @@ impl Raster {
     /// # Errors
     /// [`RasterError::CrsMismatch`] with the command that reprojects.
     pub fn same_system(&self, path: &Path, terrain: &Raster) -> Result<(), RasterError> {
-        let (Some(own), Some(wanted)) = (&self.crs, &terrain.crs) else { return Ok(()) };
-        match own.contradiction(wanted) {
-            None => Ok(()),
-            Some(proof) => Err(RasterError::mismatch(path, own, wanted, proof)),
-        }
+        agreed(path, self.crs.clone(), terrain.crs.as_ref(), &mut Vec::new()).map(|_| ())
     }
 
     /// Degrees show in three ways: the CRS says so, or coordinates fit on a globe of 360 by 180 while the relief is
@@ -141,9 +191,7 @@ impl Raster {
             self.west >= -360.0 && self.east() <= 360.0 && self.south >= -90.0 && self.north() <= 90.0;
         let extent = self.cell * self.columns.max(self.rows) as f64;
         let steep = self.range().is_some_and(|(low, high)| high - low > 10.0 * extent);
-        let code = self.crs.as_ref().and_then(|crs| crs.epsg).unwrap_or(0);
-        self.crs.as_ref().is_some_and(Crs::is_geographic)
-            || globe && self.cell < 1.0 && (steep || (4001..5000).contains(&code))
+        self.crs.as_ref().is_some_and(Crs::is_geographic) || globe && self.cell < 1.0 && steep
     }
 
     /// The demands on every raster: metres, and at least one value.
@@ -154,7 +202,10 @@ impl Raster {
         if let Some(metres) =
             self.crs.as_ref().and_then(Crs::metres_per_unit).filter(|m| (m - 1.0).abs() > 1e-9)
         {
-            return Err(RasterError::unit(path, metres, self.cell));
+            return Err(RasterError::unit(path, self.crs.as_ref(), metres, self.cell));
+        }
+        if self.crs.as_ref().is_some_and(|crs| !crs.is_true_to_scale()) {
+            return Err(RasterError::web_map(path, &self));
         }
         let Some((low, high)) = self.range() else {
             return Err(RasterError::Empty { path: path.into(), cells: self.values.len() });
@@ -186,13 +237,29 @@ fn turn(values: &mut [f64], columns: usize) {
     }
 }
 
-/// The CRS of a file and the one that a case gives, where they agree.
-fn agreed(path: &Path, own: Option<Crs>, given: Option<&Crs>) -> Result<Option<Crs>, RasterError> {
+/// The CRS of a file and the one that a case gives, where they agree; a note where that cannot be known.
+fn agreed(
+    path: &Path,
+    own: Option<Crs>,
+    given: Option<&Crs>,
+    notes: &mut Vec<Remark>,
+) -> Result<Option<Crs>, RasterError> {
     let (Some(own), Some(given)) = (&own, given) else { return Ok(own.or(given.cloned())) };
-    match own.contradiction(given) {
-        Some(proof) => Err(RasterError::mismatch(path, own, given, proof)),
-        None => Ok(Some(Crs { epsg: own.epsg.or(given.epsg), wkt: own.wkt.clone().or(given.wkt.clone()) })),
+    match own.compare(given) {
+        Comparison::Different(proof) => return Err(RasterError::mismatch(path, own, given, proof)),
+        Comparison::Unknown(what) => notes.push(uncertain(path, own, given, &what)),
+        Comparison::Same => {}
     }
+    Ok(Some(Crs { epsg: own.epsg.or(given.epsg), wkt: own.wkt.clone().or(given.wkt.clone()) }))
+}
+
+/// The note on two systems that could not be compared.
+pub(crate) fn uncertain(path: &Path, own: &Crs, other: &Crs, what: &str) -> Remark {
+    let (own, other) = (own.describe(), other.describe());
+    let path = path.display();
+    Remark::Warning(format!(
+        "{path}: whether {own} is {other} could not be decided ({what}); it was taken to be"
+    ))
 }
 
 #[cfg(test)]
@@ -238,10 +305,10 @@ pub(crate) mod tests {
     fn a_given_system_fills_in_and_a_contradiction_is_refused() {
         let [a, b] = [31287, 32632].map(|epsg| Crs { epsg: Some(epsg), wkt: None });
         let path = Path::new("dem.asc");
-        assert_eq!(agreed(path, None, Some(&a)).unwrap(), Some(a.clone()));
-        let message = agreed(path, Some(b.clone()), Some(&a)).unwrap_err().to_string();
+        assert_eq!(agreed(path, None, Some(&a), &mut Vec::new()).unwrap(), Some(a.clone()));
+        let message = agreed(path, Some(b.clone()), Some(&a), &mut Vec::new()).unwrap_err().to_string();
         assert!(
-            message.contains("EPSG:32632 against EPSG:31287") && message.contains("gdalwarp"),
+            message.contains("EPSG:32632") && message.contains("EPSG:31287") && message.contains("gdalwarp"),
             "{message}"
         );
         let terrain = Raster { crs: Some(a), ..sampled(2, 2, |_, _| 0.0) };

@@ -4,6 +4,7 @@ mod coverage;
 mod error;
 mod outlines;
 mod sparse;
+mod table;
 mod vector;
 
 pub use error::ReleaseError;
@@ -11,9 +12,12 @@ pub use outlines::Outlines;
 pub use sparse::Sparse;
 pub use vector::Layer;
 
-use crate::raster::Raster;
+use crate::Remark;
+use crate::raster::{Comparison, Crs, Raster, uncertain};
 use crate::terrain::Terrain;
-use geo::{Area, BooleanOps, BoundingRect, Intersects, MultiPolygon, Polygon, Validation, unary_union};
+use geo::{Area, BooleanOps, BoundingRect, Contains, Line, Point, Polygon, Rect, Validation, unary_union};
+use rstar::primitives::{GeomWithData, Rectangle};
+use rstar::{AABB, RTree};
 use std::collections::BTreeMap;
 use std::path::Path;
 use vector::Feature;
@@ -80,36 +84,68 @@ impl Layer {
     /// [`ReleaseError::Shape`] for rings that cross themselves.
     pub fn outlines(self) -> Result<Vec<Polygon>, ReleaseError> {
         let mut outlines = Vec::new();
-        for (feature, number) in self.features.into_iter().zip(1..) {
-            outlines.extend(sound(&self.name, number, feature.polygons)?);
+        for feature in self.features {
+            outlines.extend(sound(&self.name, feature.number, feature.polygons)?);
         }
         Ok(outlines)
+    }
+
+    /// The coordinate reference system, where the file or the `.prj` beside it says one.
+    pub fn crs(&self) -> Option<&Crs> {
+        self.crs.as_ref()
+    }
+
+    /// What a reader must know who lays this layer on `template`: features left out, systems that could not be compared.
+    pub fn notes(&self, template: &Raster) -> Vec<Remark> {
+        let mut notes = Vec::new();
+        let name = self.name.display();
+        if self.left_out > 0 {
+            let count = self.left_out;
+            notes.push(Remark::Note(format!(
+                "{name}: left out {count} of its features, without a shape or marked deleted"
+            )));
+        }
+        match (&self.crs, &template.crs) {
+            (Some(own), Some(terrain)) => {
+                if let Comparison::Unknown(what) = own.compare(terrain) {
+                    notes.push(uncertain(&self.name, own, terrain, &what));
+                }
+            }
+            (None, Some(terrain)) => notes.push(Remark::Note(format!(
+                "{name}: it says no coordinate reference system; that of the terrain was taken, {}",
+                terrain.describe()
+            ))),
+            (Some(own), None) => notes.push(Remark::Warning(format!(
+                "{name}: it is in {}, and the terrain says no system; the two were taken to be one",
+                own.describe()
+            ))),
+            (None, None) => {}
+        }
+        notes
     }
 }
 
 /// [`Layer::thickness`].
 fn laid(layer: Layer, thickness: &Thickness, template: &Raster) -> Result<Sparse, ReleaseError> {
     let path = &*layer.name;
-    if let (Some(own), Some(terrain)) = (&layer.crs, &template.crs)
-        && let Some(proof) = own.contradiction(terrain)
-    {
-        return Err(ReleaseError::system(path, own, terrain, proof));
-    }
+    same_system(&layer, template)?;
     let mut areas: Vec<(Polygon, f64)> = Vec::new();
-    for (feature, number) in layer.features.into_iter().zip(1..) {
-        let thickness = thickness_of(path, number, &feature, thickness)?;
-        let polygons = sound(path, number, feature.polygons)?;
+    for feature in layer.features {
+        let thickness = thickness_of(path, &feature, thickness)?;
+        let polygons = sound(path, feature.number, feature.polygons)?;
         areas.extend(polygons.into_iter().map(|polygon| (polygon, thickness)));
     }
-    let Some(extent) =
-        MultiPolygon(areas.iter().map(|(polygon, _)| polygon.clone()).collect()).bounding_rect()
-    else {
-        return Err(ReleaseError::Nothing { path: path.into(), problem: "it holds no polygon" });
-    };
+    // The thickest first.
     areas.sort_by(|(_, a), (_, b)| b.total_cmp(a));
+    let (polygons, thicknesses): (Vec<Polygon>, Vec<f64>) = areas.into_iter().unzip();
+    let boxes = boxes(&polygons);
+    if boxes.size() == 0 {
+        return Err(ReleaseError::Nothing { path: path.into(), problem: "it holds no polygon" });
+    }
+    let extent = boxes.root().envelope();
     let mut height: BTreeMap<usize, f64> = BTreeMap::new();
     let (mut area, mut covered) = (0.0, 0.0);
-    for (k, (polygon, thickness)) in areas.iter().enumerate() {
+    for (k, (polygon, thickness)) in polygons.iter().zip(&thicknesses).enumerate() {
         area += polygon.unsigned_area();
         for (cell, share) in coverage::shares(polygon, template) {
             if !template.values[cell].is_nan() {
@@ -117,7 +153,7 @@ fn laid(layer: Layer, thickness: &Thickness, template: &Raster) -> Result<Sparse
                 *height.entry(cell).or_default() += thickness * share;
             }
         }
-        for common in overlap(polygon, &areas[..k]) {
+        for common in overlap(k, &polygons, &boxes) {
             for (cell, share) in coverage::shares(&common, template) {
                 if let Some(height) = height.get_mut(&cell) {
                     *height = (*height - thickness * share).max(0.0);
@@ -125,7 +161,8 @@ fn laid(layer: Layer, thickness: &Thickness, template: &Raster) -> Result<Sparse
             }
         }
     }
-    let bounds = [extent.min().x, extent.min().y, extent.max().x, extent.max().y];
+    let ([west, south], [east, north]) = (extent.lower(), extent.upper());
+    let bounds = [west, south, east, north];
     let height = kept(path, height.into_iter().collect(), template, bounds, 1.0 - covered / area)?;
     match height.most() > 0.0 {
         true => Ok(height),
@@ -216,12 +253,7 @@ fn kept(
     if lost <= LOST { Ok(height) } else { Err(ReleaseError::outside(path, bounds, template, lost)) }
 }
 
-fn thickness_of(
-    path: &Path,
-    number: usize,
-    feature: &Feature,
-    thickness: &Thickness,
-) -> Result<f64, ReleaseError> {
+fn thickness_of(path: &Path, feature: &Feature, thickness: &Thickness) -> Result<f64, ReleaseError> {
     let (value, found, name) = match thickness {
         Thickness::Value(value) => (Some(*value), value.to_string(), "thickness"),
         Thickness::Attribute(name) => {
@@ -231,26 +263,75 @@ fn thickness_of(
             let Some((name, text)) = exact else {
                 return Err(ReleaseError::attribute(path, name, attributes));
             };
-            (text.trim().parse().ok(), text.clone(), name.as_str())
+            let text = text.trim();
+            let value = text.parse().ok().or_else(|| text.replacen(',', ".", 1).parse().ok());
+            (value, text.to_string(), name.as_str())
         }
     };
     match value.filter(|value: &f64| value.is_finite() && *value >= 0.0) {
         Some(value) => Ok(value),
         None => {
             let (path, name) = (path.into(), name.to_string());
-            Err(ReleaseError::Thickness { path, feature: number, name, found })
+            Err(ReleaseError::Thickness { path, feature: feature.number, name, found })
         }
     }
 }
 
-/// The parts of a polygon that polygons before it cover, each point once.
-fn overlap(polygon: &Polygon, before: &[(Polygon, f64)]) -> Vec<Polygon> {
-    let near = |other: &&Polygon| match (polygon.bounding_rect(), other.bounding_rect()) {
-        (Some(own), Some(other)) => own.intersects(&other),
-        _ => false,
+/// The parts of polygon `k` that polygons before it cover, each point once.
+fn overlap(k: usize, polygons: &[Polygon], boxes: &Boxes) -> Vec<Polygon> {
+    let Some(own) = polygons[k].bounding_rect() else { return Vec::new() };
+    let envelope = AABB::from_corners(own.min().into(), own.max().into());
+    let mut cutting = Vec::new();
+    for other in
+        boxes.locate_in_envelope_intersecting(&envelope).map(|found| found.data).filter(|other| *other < k)
+    {
+        match holds(&polygons[other], own) {
+            Some(true) => return vec![polygons[k].clone()],
+            Some(false) => {}
+            None => cutting.push(&polygons[other]),
+        }
+    }
+    if cutting.is_empty() { Vec::new() } else { polygons[k].intersection(&unary_union(cutting)).0 }
+}
+
+/// Whether a polygon holds all of a rectangle or nothing of it, `None` where an edge comes near: far cheaper to find than a cut
+/// where a large polygon holds many small ones.
+fn holds(polygon: &Polygon, rect: Rect) -> Option<bool> {
+    let rings = std::iter::once(polygon.exterior()).chain(polygon.interiors());
+    let near = |edge: Line| {
+        let apart = |a: f64, b: f64, low: f64, high: f64| a.max(b) < low || a.min(b) > high;
+        let (from, to) = (edge.start, edge.end);
+        !apart(from.x, to.x, rect.min().x, rect.max().x) && !apart(from.y, to.y, rect.min().y, rect.max().y)
     };
-    let near: Vec<&Polygon> = before.iter().map(|(other, _)| other).filter(near).collect();
-    if near.is_empty() { Vec::new() } else { polygon.intersection(&unary_union(near)).0 }
+    let clear = !rings.flat_map(|ring| ring.lines()).any(near);
+    clear.then(|| polygon.contains(&Point::from(rect.center())))
+}
+
+/// The bounding boxes of polygons with their numbers, for finding those near a place.
+type Boxes = RTree<GeomWithData<Rectangle<[f64; 2]>, usize>>;
+
+fn boxes(polygons: &[Polygon]) -> Boxes {
+    let boxed = |(number, polygon): (usize, &Polygon)| {
+        let rect = polygon.bounding_rect()?;
+        Some(GeomWithData::new(Rectangle::from_corners(rect.min().into(), rect.max().into()), number))
+    };
+    RTree::bulk_load(polygons.iter().enumerate().filter_map(boxed).collect())
+}
+
+/// Refuses a layer in another system than that of `template`, or in another unit than the metre where that has none.
+fn same_system(layer: &Layer, template: &Raster) -> Result<(), ReleaseError> {
+    match (&layer.crs, &template.crs) {
+        (Some(own), Some(terrain)) => match own.compare(terrain) {
+            Comparison::Different(proof) => Err(ReleaseError::system(&layer.name, own, terrain, proof)),
+            Comparison::Same | Comparison::Unknown(_) => Ok(()),
+        },
+        (Some(own), None)
+            if own.is_geographic() || own.metres_per_unit().is_some_and(|m| (m - 1.0).abs() > 1e-9) =>
+        {
+            Err(ReleaseError::NoSystem { path: layer.name.clone(), own: own.describe() })
+        }
+        _ => Ok(()),
+    }
 }
 
 /// Refuses rings that cross themselves or each other; rings that only touch enclose a clear area and pass.
@@ -263,13 +344,15 @@ fn sound(path: &Path, feature: usize, polygons: Vec<Polygon>) -> Result<Vec<Poly
 
 /// What is wrong with the rings of a polygon, and the cure.
 fn crossing(polygon: &Polygon) -> Option<String> {
-    let problem = polygon.check_validation().err()?;
-    let finite = polygon.exterior().coords().all(|c| c.x.is_finite() && c.y.is_finite());
+    let mut rings = std::iter::once(polygon.exterior()).chain(polygon.interiors());
+    let finite = rings.all(|ring| ring.coords().all(|c| c.x.is_finite() && c.y.is_finite()));
     let (area, union) =
         (polygon.unsigned_area(), if finite { unary_union([polygon]).unsigned_area() } else { f64::NAN });
     if (area - union).abs() <= 1e-6 * area {
         return None;
     }
+    // Last, since it looks at every pair of edges.
+    let problem = polygon.check_validation().err()?;
     Some(format!(
         "{problem}; mend it with QGIS (Fix geometries) or\n  ogr2ogr -makevalid mended.shp THIS_FILE"
     ))

@@ -1,8 +1,11 @@
 //! Terrain: the bed z = b(x, y) of a raster, and its gradient and Hessian by local least squares.
 
 mod fit;
+mod survey;
+mod wide;
 
 pub use fit::Fit;
+pub use survey::{Pits, Survey};
 
 use crate::cells::reduced;
 use crate::raster::Raster;
@@ -30,12 +33,15 @@ impl Curvature {
     }
 }
 
-/// A bed whose derivatives are fitted where they are asked for: they take more memory than the bed, and a run asks once.
+/// A bed whose derivatives are fitted where they are asked for: they take more memory than the bed, and a run asks once. Only
+/// where windows are more than 17 cells wide they are fitted together and kept, 40 bytes a cell.
 #[derive(Debug, Clone)]
 pub struct Terrain {
     /// Elevation b of the bed \[m\], NaN outside.
     pub bed: Arc<Raster>,
     windows: Windows,
+    /// The fits of all cells, where windows are so wide that one by one they take too long.
+    wide: Option<Arc<[Fit]>>,
     curved: bool,
 }
 
@@ -56,8 +62,10 @@ impl Terrain {
     /// The bed with windows of this length around its cells.
     pub fn new(bed: impl Into<Arc<Raster>>, curvature: Curvature) -> Terrain {
         let bed = bed.into();
-        let windows = Windows::new(curvature.half_width(bed.cell), bed.cell);
-        Terrain { bed, windows, curved: curvature != Curvature::Off }
+        let m = curvature.half_width(bed.cell);
+        let windows = Windows::new(m, bed.cell);
+        let wide = (m > wide::NARROW).then(|| wide::fits(&bed, m).into());
+        Terrain { bed, windows, wide, curved: curvature != Curvature::Off }
     }
 
     /// Fits b + b_x x + b_y y + b_xx x^2/2 + b_xy x y + b_yy y^2/2 around the cell (column, row) by least squares, all
@@ -68,7 +76,10 @@ impl Terrain {
     /// is fitted, then differences towards the neighbours there are, and a lone cell is level. Every quadratic bed
     /// is reproduced exactly but for rounding, and beds mirrored in an axis give mirrored derivatives bit for bit.
     pub fn fit(&self, cell: [usize; 2]) -> Fit {
-        let fit = self.windows.fit(&self.bed, cell);
+        let fit = match &self.wide {
+            Some(fits) => fits[cell[1] * self.bed.columns + cell[0]],
+            None => self.windows.fit(&self.bed, cell),
+        };
         if self.curved { fit } else { Fit { hessian: [0.0; 3], ..fit } }
     }
 

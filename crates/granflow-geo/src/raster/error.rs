@@ -25,7 +25,8 @@ pub enum RasterError {
     },
     /// The content is neither GeoTIFF nor ESRI ASCII.
     #[error(
-        "{path} is neither a GeoTIFF nor an ESRI ASCII grid ({found}); convert it with\n  \
+        "{path} is neither a GeoTIFF nor an ESRI ASCII grid ({found}). A grid begins with lines such as `ncols 100`; \
+         if it is another raster that GDAL reads, convert it with\n  \
          gdal_translate {path} {stem}.tif", path = path.display(), stem = stem(path)
     )]
     Format {
@@ -82,6 +83,33 @@ pub enum RasterError {
         /// What is wrong and what helps.
         problem: String,
     },
+    /// What is declared of the values, in the file or in the `.aux.xml` beside it, makes no sense.
+    #[error("{path}: {problem}", path = path.display())]
+    Declared {
+        /// The file.
+        path: PathBuf,
+        /// What is wrong and what helps.
+        problem: String,
+    },
+    /// A map of the web: one metre on it is cos(latitude) metres.
+    #[error(
+        "{path} is in {found}, where lengths are too long by 1/cos(latitude) ({percent:.0} % here); reproject with\n  \
+         gdalwarp -t_srs EPSG:{epsg} -tr {cell} {cell} -r bilinear {path} {stem}_metres.tif\n\
+         (EPSG:{epsg} is the UTM zone of its centre, the national system does as well)",
+        path = path.display(), stem = stem(path)
+    )]
+    WebMap {
+        /// The file.
+        path: PathBuf,
+        /// The system.
+        found: String,
+        /// By how much lengths are too long \[%\].
+        percent: f64,
+        /// The UTM zone that fits.
+        epsg: u32,
+        /// A cell size in metres that fits.
+        cell: f64,
+    },
     /// Cells are not square.
     #[error(
         "{path}: cells of {width} by {height} are not square; resample with\n  \
@@ -116,8 +144,9 @@ pub enum RasterError {
     /// The unit of the coordinates is not the metre.
     #[error(
         "{path}: one unit of its coordinates is {metres} m, granflow needs metres; reproject with\n  \
-         gdalwarp -t_srs EPSG:xxxx -tr {cell} {cell} -r bilinear {path} {stem}_metres.tif\n\
-         (EPSG:xxxx: a system in metres, see epsg.io; mind that elevations may be in feet too)",
+         gdalwarp{from} -t_srs EPSG:xxxx -tr {cell} {cell} -r bilinear {path} {stem}_metres.tif\n\
+         (EPSG:xxxx: a system in metres, see epsg.io). Heights stay as they are: if they are in feet, say so with\n  \
+         gdal_edit.py -units ft {stem}_metres.tif\n(ft: 0.3048 m, us-ft: 1200/3937 m), and they are converted as they are read",
         path = path.display(), stem = stem(path)
     )]
     Unit {
@@ -125,6 +154,8 @@ pub enum RasterError {
         path: PathBuf,
         /// Metres per unit.
         metres: f64,
+        /// The option that says the system, where it is known.
+        from: String,
         /// Cell size in metres.
         cell: f64,
     },
@@ -152,7 +183,7 @@ pub enum RasterError {
     #[error(
         "{path} is in {own}, the terrain of the case in {wanted} ({proof}); correct crs in the case, or \
          reproject with\n  \
-         gdalwarp -t_srs {target} {path} {stem}_reprojected.tif", path = path.display(), stem = stem(path)
+         gdalwarp -t_srs {} {path} {stem}_reprojected.tif{}", target[0], target[1], path = path.display(), stem = stem(path)
     )]
     CrsMismatch {
         /// The file.
@@ -163,8 +194,8 @@ pub enum RasterError {
         wanted: String,
         /// What differs.
         proof: String,
-        /// What `gdalwarp -t_srs` takes.
-        target: String,
+        /// What `gdalwarp -t_srs` takes, and what to know about that.
+        target: Box<[String; 2]>,
     },
 }
 
@@ -179,25 +210,48 @@ impl RasterError {
 
     pub(super) fn geographic(path: &Path, raster: &Raster) -> RasterError {
         let (x, y) = (0.5 * (raster.west + raster.east()), 0.5 * (raster.south + raster.north()));
-        let zone = (((x + 180.0) / 6.0).floor().rem_euclid(60.0)) as u32 + 1;
         let cell = two_digits(raster.cell * 111_320.0 * y.to_radians().cos().abs().max(0.1).sqrt());
         let found = match &raster.crs {
             Some(crs) => format!("{crs}, cell size {}", raster.cell),
             None => format!("cell size {}", raster.cell),
         };
-        let epsg = if y < 0.0 { 32700 + zone } else { 32600 + zone };
-        RasterError::Geographic { path: path.into(), found, epsg, cell }
+        RasterError::Geographic { path: path.into(), found, epsg: utm(x, y), cell }
     }
 
-    pub(super) fn unit(path: &Path, metres: f64, cell: f64) -> RasterError {
-        RasterError::Unit { path: path.into(), metres, cell: two_digits(cell * metres) }
+    /// The position of a web map's centre is that of a sphere: x = R lambda, y = R ln tan(pi/4 + phi/2).
+    pub(super) fn web_map(path: &Path, raster: &Raster) -> RasterError {
+        const RADIUS: f64 = 6_378_137.0;
+        let (x, y) = (0.5 * (raster.west + raster.east()), 0.5 * (raster.south + raster.north()));
+        let (longitude, latitude) = (x / RADIUS, (y / RADIUS).sinh().atan());
+        let found = raster.crs.as_ref().map(Crs::describe).unwrap_or_default();
+        let percent = 100.0 * (1.0 / latitude.cos() - 1.0);
+        let epsg = utm(longitude.to_degrees(), latitude.to_degrees());
+        RasterError::WebMap {
+            path: path.into(),
+            found,
+            percent,
+            epsg,
+            cell: two_digits(raster.cell * latitude.cos()),
+        }
+    }
+
+    pub(super) fn unit(path: &Path, crs: Option<&Crs>, metres: f64, cell: f64) -> RasterError {
+        let from = crs.and_then(|crs| crs.epsg).map(|code| format!(" -s_srs EPSG:{code}"));
+        let (path, cell) = (path.into(), two_digits(cell * metres));
+        RasterError::Unit { path, metres, from: from.unwrap_or_default(), cell }
     }
 
     pub(super) fn mismatch(path: &Path, own: &Crs, wanted: &Crs, proof: String) -> RasterError {
-        let target = wanted.epsg.map_or("TERRAIN.prj".to_string(), |code| format!("EPSG:{code}"));
-        let (own, wanted) = (own.to_string(), wanted.to_string());
+        let target = Box::new(Crs::target(Some(wanted)));
+        let (own, wanted) = (own.describe(), wanted.describe());
         RasterError::CrsMismatch { path: path.into(), own, wanted, proof, target }
     }
+}
+
+/// The UTM zone of a place in degrees, on WGS 84.
+fn utm(longitude: f64, latitude: f64) -> u32 {
+    let zone = (((longitude + 180.0) / 6.0).floor().rem_euclid(60.0)) as u32 + 1;
+    if latitude < 0.0 { 32700 + zone } else { 32600 + zone }
 }
 
 fn stem(path: &Path) -> String {
@@ -205,8 +259,10 @@ fn stem(path: &Path) -> String {
 }
 
 fn hint(found: &str) -> &'static str {
-    let comma = found.contains(',') && found.replace(',', ".").parse::<f64>().is_ok();
-    if comma { "; decimals are written with a point" } else { "; values are numbers or the nodata value" }
+    match found.contains([',', ';']) {
+        true => "; values are separated by blanks, with a point or a comma for decimals",
+        false => "; values are numbers or the nodata value",
+    }
 }
 
 /// Rounds to two significant digits.

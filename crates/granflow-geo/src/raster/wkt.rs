@@ -16,9 +16,46 @@ enum Item {
 
 impl Node {
     /// Parses a whole text; `None` where brackets or quotes do not close or something follows.
+    ///
+    /// ArcGIS writes the vertical system after the horizontal one, `PROJCS[...],VERTCS[...]`: several elements become the
+    /// children of one `COMPD_CS`.
     pub fn parse(text: &str) -> Option<Node> {
-        let (node, rest) = Self::element(text.trim(), 0)?;
-        rest.trim().is_empty().then_some(node)
+        let (first, mut rest) = Self::element(text.trim(), 0)?;
+        let mut items = vec![Item::Node(first)];
+        while let Some(next) = rest.trim_start().strip_prefix(',') {
+            let node;
+            (node, rest) = Self::element(next.trim_start(), 0)?;
+            items.push(Item::Node(node));
+        }
+        if !rest.trim().is_empty() {
+            return None;
+        }
+        match (items.len(), items.pop()?) {
+            (1, Item::Node(only)) => Some(only),
+            (_, last) => {
+                items.push(last);
+                Some(Node { keyword: "COMPD_CS".into(), items })
+            }
+        }
+    }
+
+    /// The first node of one of these keywords, this one or below it.
+    pub fn find(&self, keywords: &[&str]) -> Option<&Node> {
+        if keywords.contains(&&*self.keyword) {
+            return Some(self);
+        }
+        self.children().find_map(|child| child.find(keywords))
+    }
+
+    /// The first child of one of these keywords.
+    pub fn child(&self, keywords: &[&str]) -> Option<&Node> {
+        self.children().find(|child| keywords.contains(&&*child.keyword))
+    }
+
+    /// The EPSG code of the element itself.
+    pub fn code(&self) -> Option<u32> {
+        let own = |n: &&Node| (n.is("AUTHORITY") || n.is("ID")) && n.text(0) == Some("EPSG");
+        self.children().find(own)?.number(1).map(|code| code as u32)
     }
 
     pub fn is(&self, keyword: &str) -> bool {
@@ -98,7 +135,10 @@ mod tests {
         assert!(
             child.is("B") && child.children().next().is_some_and(|c| c.is("C") && c.number(0) == Some(1.0))
         );
-        for broken in ["", "A", "A[", "A[\"x]", "A[1", "A[1]B", "[1]", "A[1,]x", "A[B[1]"] {
+        let two = Node::parse("A[1],\n B[2]").unwrap();
+        assert!(two.is("COMPD_CS") && two.children().map(|n| n.keyword.as_str()).eq(["A", "B"]));
+        for broken in ["", "A", "A[", "A[\"x]", "A[1", "A[1]B", "[1]", "A[1,]x", "A[B[1]", "A[1],", "A[1],2"]
+        {
             assert_eq!(Node::parse(broken), None, "{broken}");
         }
     }

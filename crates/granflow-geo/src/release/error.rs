@@ -58,7 +58,8 @@ pub enum ReleaseError {
     },
     /// A thickness is negative or no number.
     #[error(
-        "{path}, feature {feature}: {name} = `{found}` is not a thickness; allowed are numbers from 0 on, in metres",
+        "{path}, feature {feature}: {name} {}; allowed are numbers from 0 on, in metres: give it one, or thickness = 1.0 in \
+         the case for all features", if found.is_empty() { "is not given (NULL)".into() } else { format!("= `{found}` is not a thickness") },
         path = path.display()
     )]
     Thickness {
@@ -89,7 +90,7 @@ pub enum ReleaseError {
     /// The release and the terrain are in different coordinate reference systems.
     #[error(
         "{path} is in {own}, the terrain in {terrain} ({proof}); reproject the polygons with\n  \
-         ogr2ogr -t_srs {target} release_reprojected.shp {path}", path = path.display()
+         ogr2ogr -t_srs {} release_reprojected.shp {path}{}", target[0], target[1], path = path.display()
     )]
     System {
         /// The file.
@@ -100,8 +101,20 @@ pub enum ReleaseError {
         terrain: String,
         /// What differs.
         proof: String,
-        /// What `ogr2ogr -t_srs` takes.
-        target: String,
+        /// What `ogr2ogr -t_srs` takes, and what to know about that.
+        target: Box<[String; 2]>,
+    },
+    /// The release is not in metres, and the terrain says no system.
+    #[error(
+        "{path} is in {own}, which is not in metres, and the terrain says no system; name it by crs = \"EPSG:xxxx\" in \
+         [terrain], and reproject the polygons with\n  ogr2ogr -t_srs EPSG:xxxx release_reprojected.shp {path}",
+        path = path.display()
+    )]
+    NoSystem {
+        /// The file.
+        path: PathBuf,
+        /// Its system.
+        own: String,
     },
     /// Some or all of the release lies where the terrain has no values.
     #[error(
@@ -150,7 +163,8 @@ pub enum ReleaseError {
 
 impl ReleaseError {
     pub(super) fn system(path: &Path, own: &Crs, terrain: &Crs, proof: String) -> ReleaseError {
-        let (own, target, terrain) = (own.to_string(), target(Some(terrain)), terrain.to_string());
+        let (own, target, terrain) =
+            (own.describe(), Box::new(Crs::target(Some(terrain))), terrain.describe());
         ReleaseError::System { path: path.into(), own, terrain, proof, target }
     }
 
@@ -181,8 +195,8 @@ impl ReleaseError {
         let within = (0..2).all(|k| release[k] >= terrain[k] && release[k + 2] <= terrain[k + 2]);
         let degrees =
             release[0] >= -360.0 && release[2] <= 360.0 && release[1] >= -90.0 && release[3] <= 90.0;
-        let reproject =
-            format!("ogr2ogr -t_srs {} reprojected.shp {}", target(template.crs.as_ref()), path.display());
+        let [target, about] = Crs::target(template.crs.as_ref());
+        let reproject = format!("ogr2ogr -t_srs {target} reprojected.shp {}{about}", path.display());
         let cure = match (apart, degrees) {
             (true, true) => format!("the release looks like degrees; reproject it with\n  {reproject}"),
             (true, false) => format!(
@@ -202,8 +216,4 @@ impl ReleaseError {
         let share = if lost > 1.0 - 1e-9 { "all".to_string() } else { format!("{:.2} %", 100.0 * lost) };
         ReleaseError::Outside { path: path.into(), share, place, release, terrain, cure }
     }
-}
-
-fn target(crs: Option<&Crs>) -> String {
-    crs.and_then(|crs| crs.epsg).map_or("TERRAIN.prj".to_string(), |code| format!("EPSG:{code}"))
 }

@@ -121,19 +121,6 @@ fn shapefiles_with_islands_in_holes_and_attributes() {
     let message = polygons(&path, &Thickness::Attribute("Name".into()), &ground()).unwrap_err().to_string();
     assert!(message.contains("feature 1: Name = `Lahn` is not a thickness"), "{message}");
 
-    std::fs::write(path.with_extension("prj"), "PROJCS[\"A\",PARAMETER[\"False_Easting\",5.0]]").unwrap();
-    let crs = |text: &str| Some(Crs::parse(text).unwrap());
-    let terrain = Raster {
-        crs: crs("PROJCS[\"B\",PARAMETER[\"false_easting\",6],AUTHORITY[\"EPSG\",\"31287\"]]"),
-        ..ground()
-    };
-    let message = polygons(&path, &ONE, &terrain).unwrap_err().to_string();
-    assert!(
-        message.contains("false_easting 5 against 6") && message.contains("ogr2ogr -t_srs EPSG:31287"),
-        "{message}"
-    );
-    assert!(polygons(&path, &ONE, &Raster { crs: crs("EPSG:31287"), ..ground() }).is_ok());
-
     std::fs::remove_file(path.with_extension("dbf")).unwrap();
     assert!(polygons(&path, &ONE, &ground()).is_ok());
     let message = polygons(&path, &Thickness::Attribute("d".into()), &ground()).unwrap_err().to_string();
@@ -163,8 +150,104 @@ fn refusals_of_geojson_name_the_feature_and_the_cure() {
     );
     let crs = r#""crs":{"type":"name","properties":{"name":"urn:ogc:def:crs:EPSG::32632"}},"#;
     let terrain = Raster { crs: Some(Crs::parse("EPSG:31287").unwrap()), ..ground() };
-    let message = released(&collection(&[square], crs), &ONE, &terrain).unwrap_err().to_string();
-    assert!(message.contains("EPSG:32632 against EPSG:31287"), "{message}");
+    let message =
+        released(&collection(std::slice::from_ref(&square), crs), &ONE, &terrain).unwrap_err().to_string();
+    assert!(message.contains("EPSG:32632 (WGS 84 / UTM zone 32N)") && message.contains("datum"), "{message}");
+    let unknown = collection(&[square], r#""crs":{"type":"name","properties":{"name":"ESRI:102100"}},"#);
+    assert!(refused(&unknown, &ONE).contains("ogr2ogr -a_srs EPSG:xxxx"), "its system is not dropped");
+}
+
+/// UTM zone 33 on ETRS89 as ArcGIS writes it.
+const ZONE_33: &str = r#"PROJCS["ETRS_1989_UTM_Zone_33N",GEOGCS["GCS_ETRS_1989",DATUM["D_ETRS_1989",SPHEROID["GRS_1980",6378137.0,298.257222101]],PRIMEM["Greenwich",0.0],UNIT["Degree",0.0174532925199433]],PROJECTION["Transverse_Mercator"],PARAMETER["False_Easting",500000.0],PARAMETER["False_Northing",0.0],PARAMETER["Central_Meridian",15.0],PARAMETER["Scale_Factor",0.9996],PARAMETER["Latitude_Of_Origin",0.0],UNIT["Meter",1.0]]"#;
+
+#[test]
+fn the_prj_of_a_shapefile_is_compared_and_never_dropped() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = shapefile_of(folder.path(), vec![PolygonRing::Outer(corners(1.0, 1.0, 7.0, 6.0))], None);
+    let on = |prj: &str, terrain: Option<&str>| {
+        std::fs::write(path.with_extension("prj"), prj).unwrap();
+        let crs = terrain.map(|text| Crs::parse(text).unwrap());
+        let template = Raster { crs, ..ground() };
+        let layer = Layer::read(&path).map_err(|error| error.to_string())?;
+        let notes = layer.notes(&template);
+        layer.thickness(&ONE, &template).map(|_| notes).map_err(|error| error.to_string())
+    };
+    let vertical =
+        format!("{ZONE_33},VERTCS[\"EVRF\",VDATUM[\"E\"],PARAMETER[\"Direction\",1.0],UNIT[\"Meter\",1.0]]");
+    for prj in [ZONE_33, &vertical] {
+        assert_eq!(on(prj, Some("EPSG:25833")), Ok(Vec::new()));
+        let message = on(prj, Some("EPSG:25832")).unwrap_err();
+        assert!(
+            message.contains("15 against 9") && message.contains("ogr2ogr -t_srs EPSG:25832"),
+            "{message}"
+        );
+        assert!(on(prj, Some("EPSG:32633")).unwrap_err().contains("datum D_ETRS_1989 against WGS_1984"));
+        assert!(on(prj, None).unwrap()[0].text().contains("the terrain says no system"));
+    }
+    let message = on("+proj=utm +zone=33 +ellps=GRS80", Some("EPSG:25832")).unwrap_err();
+    assert!(message.contains("gdalsrsinfo -o wkt1_esri \"+proj=utm +zone=33 +ellps=GRS80\" >"), "{message}");
+    let own = ZONE_33.replace("D_ETRS_1989", "D_Mine");
+    let notes = on(&own, Some("EPSG:25833")).unwrap();
+    assert!(notes[0].text().contains("could not be decided (datum D_Mine against"), "{notes:?}");
+    assert!(on("", Some("EPSG:25833")).unwrap()[0].text().contains("says no coordinate reference system"));
+    let feet = ZONE_33.replace("UNIT[\"Meter\",1.0]", "UNIT[\"Foot\",0.3048]");
+    assert!(on(&feet, None).unwrap_err().contains("which is not in metres"));
+}
+
+#[test]
+fn what_a_thicker_polygon_holds_adds_nothing_and_its_hole_is_no_part_of_it() {
+    let around = feature(&[ring(0.0, 0.0, 8.0, 7.0), ring(3.0, 3.0, 6.0, 6.0)], r#"{"d":2}"#);
+    let squares = [(1.0, 1.0), (4.0, 4.0), (8.5, 1.0)];
+    let small = squares.map(|(x, y)| feature(&[ring(x, y, x + 1.0, y + 1.0)], r#"{"d":1}"#));
+    let all = collection(&[&[around], &small[..]].concat(), "");
+    let height = released(&all, &Thickness::Attribute("d".into()), &ground()).unwrap();
+    assert_eq!((height[11], height[44], height[33]), (2.0, 1.0, 0.0));
+    assert!((height.iter().sum::<f64>() - (2.0 * (56.0 - 9.0) + 1.0 + 1.0)).abs() < 1e-12);
+}
+
+#[test]
+fn a_bow_tie_without_area_is_refused_beside_sound_polygons() {
+    let folder = tempfile::tempdir().unwrap();
+    let bow =
+        [(1.0, 1.0), (3.0, 3.0), (3.0, 1.0), (1.0, 3.0), (1.0, 1.0)].map(|(x, y)| Point::new(x, y)).to_vec();
+    let rings = vec![PolygonRing::Outer(corners(4.0, 4.0, 7.0, 6.0)), PolygonRing::Outer(bow)];
+    let message =
+        polygons(&shapefile_of(folder.path(), rings, None), &ONE, &ground()).unwrap_err().to_string();
+    assert!(message.contains("feature 1") && message.contains("-makevalid"), "{message}");
+    let mut odd = corners(1.0, 1.0, 3.0, 3.0);
+    odd[1].x = f64::NAN;
+    let path = shapefile_of(folder.path(), vec![PolygonRing::Outer(odd)], None);
+    let message = polygons(&path, &ONE, &ground()).unwrap_err().to_string();
+    assert!(message.contains("a corner of it is not a number"), "{message}");
+}
+
+#[test]
+fn deleted_rows_and_shapes_that_are_null_are_left_out_and_counted() {
+    use super::table::tests::table;
+    let folder = tempfile::tempdir().unwrap();
+    let squares = [1.0, 3.0, 5.0].map(|west| corners(west, 1.0, west + 1.0, 2.0));
+    let path = folder.path().join("release.shp");
+    let mut writer = shapefile::ShapeWriter::from_path(&path).unwrap();
+    for square in squares {
+        writer.write_shape(&shapefile::Polygon::new(PolygonRing::Outer(square))).unwrap();
+    }
+    drop(writer);
+    let with = |rows: &[&str]| {
+        std::fs::write(path.with_extension("dbf"), table("thick", 'N', rows)).unwrap();
+        let layer = Layer::read(&path).unwrap();
+        let notes = layer.notes(&ground());
+        let height = layer.thickness(&Thickness::Attribute("thick".into()), &ground());
+        height.map(|height| (height.dense(80), notes)).map_err(|error| error.to_string())
+    };
+    let (height, notes) = with(&[" 1,5", "*2", " 3"]).unwrap();
+    assert_eq!((height[11], height[13], height[15]), (1.5, 0.0, 3.0));
+    assert!(notes[0].text().contains("left out 1 of its features"), "{notes:?}");
+    assert!(with(&["*1", " 2", " "]).unwrap_err().contains("feature 3: thick is not given (NULL)"));
+    assert!(with(&[" 1", " **", " 2"]).unwrap_err().contains("feature 2: thick is not given (NULL)"));
+    assert!(with(&[" 1", " x", " 2"]).unwrap_err().contains("feature 2: thick = `x` is not a thickness"));
+    let null = r#"{"type":"Feature","geometry":null,"properties":{}}"#.to_string();
+    let square = feature(&[ring(1.0, 1.0, 4.0, 4.0)], r#"{"d":2}"#);
+    assert!(released(&collection(&[null, square], ""), &Thickness::Attribute("d".into()), &ground()).is_ok());
 }
 
 #[test]

@@ -1,12 +1,12 @@
 //! Polygons with attributes from shapefiles and GeoJSON.
 
-use super::ReleaseError;
+use super::table::{Row, rows};
+use super::{ReleaseError, boxes};
 use crate::raster::{Crs, beside};
 use geo::{Area, Contains, Geometry, InteriorPoint, LineString, Polygon};
-use geojson::{GeoJson, JsonObject};
-use shapefile::dbase::{self, FieldValue};
+use geojson::GeoJson;
 use shapefile::{Shape, ShapeReader};
-use std::io::{Cursor, Read, Seek};
+use std::io::Cursor;
 use std::path::{Path, PathBuf};
 
 /// The polygons of one file, with their attributes.
@@ -16,17 +16,18 @@ pub struct Layer {
     pub(super) name: PathBuf,
     pub(super) features: Vec<Feature>,
     pub(super) crs: Option<Crs>,
+    /// Features of the file that have no shape or are marked deleted.
+    pub(super) left_out: usize,
 }
 
 /// One feature: its polygons and its attributes as name and text, the text empty where there is no value.
 #[derive(Debug, Clone, Default)]
 pub(super) struct Feature {
+    /// Its place in the file, from 1.
+    pub number: usize,
     pub polygons: Vec<Polygon>,
     pub attributes: Vec<(String, String)>,
 }
-
-/// The attributes of one shape: name and text.
-type Attributes = Vec<(String, String)>;
 
 impl Layer {
     /// Reads a shapefile (`.shp`; the attributes from `.dbf`, the CRS from `.prj`) or else GeoJSON.
@@ -40,11 +41,27 @@ impl Layer {
             return geojson(path, &bytes);
         }
         let shapes = ShapeReader::from_path(path).and_then(ShapeReader::read);
-        let table = beside(path, "dbf");
-        let records = table.exists().then(|| tables().open(&table).and_then(attributes));
-        let crs = std::fs::read(beside(path, "prj")).ok();
-        let crs = crs.and_then(|bytes| Crs::parse(&String::from_utf8_lossy(&bytes)).ok());
-        shapefile(path, shapes, &table, records, crs)
+        let optional = |file: &Path| match std::fs::read(file) {
+            Ok(bytes) => Ok(Some(bytes)),
+            Err(error) if error.kind() == std::io::ErrorKind::NotFound => Ok(None),
+            Err(source) => Err(ReleaseError::Io { path: file.into(), source }),
+        };
+        let (table, prj) = (beside(path, "dbf"), beside(path, "prj"));
+        let crs = match optional(&prj)?.map(|bytes| String::from_utf8_lossy(&bytes).trim().to_string()) {
+            Some(text) if !text.is_empty() => Some(Crs::parse(&text).map_err(|error| {
+                unreadable(
+                    &prj,
+                    format!(
+                        "{error}; write its definition into it with\n  gdalsrsinfo -o wkt1_esri \"{}\" > {}",
+                        text.replace(['"', '\n', '\r'], " "),
+                        prj.display()
+                    ),
+                )
+            })?),
+            _ => None,
+        };
+        let records = optional(&table)?;
+        shapefile(path, shapes, (&table, records.as_deref()), crs)
     }
 
     /// As [`Layer::read`], from the bytes of a file that is called `name` in messages.
@@ -65,8 +82,7 @@ impl Layer {
             return Ok(Layer { crs: layer.crs.or(crs), ..layer });
         }
         let shapes = ShapeReader::new(Cursor::new(bytes)).and_then(ShapeReader::read);
-        let records = table.map(|table| tables().build(Cursor::new(table)).and_then(attributes));
-        shapefile(name, shapes, &name.with_extension("dbf"), records, crs)
+        shapefile(name, shapes, (&name.with_extension("dbf"), table), crs)
     }
 }
 
@@ -83,24 +99,25 @@ fn no_polygon(path: &Path, feature: usize, found: &str) -> ReleaseError {
     ReleaseError::Shape { path: path.into(), feature, problem }
 }
 
-/// The layer of the shapes of a file and the records of the table beside it.
+/// The layer of the shapes of a file and the table beside it.
 fn shapefile(
     path: &Path,
     shapes: Result<Vec<Shape>, shapefile::Error>,
-    table: &Path,
-    records: Option<Result<Vec<Attributes>, dbase::Error>>,
+    (table, bytes): (&Path, Option<&[u8]>),
     crs: Option<Crs>,
 ) -> Result<Layer, ReleaseError> {
     let shapes = shapes.map_err(|e| unreadable(path, e))?;
-    let records = match records {
-        Some(records) => records.map_err(|e| unreadable(table, e))?,
-        None => vec![Vec::new(); shapes.len()],
+    let records: Vec<Row> = match bytes {
+        Some(bytes) => rows(bytes).map_err(|e| unreadable(table, e))?,
+        None => vec![Some(Vec::new()); shapes.len()],
     };
     if records.len() != shapes.len() {
         return Err(unreadable(table, format!("{} records for {} shapes", records.len(), shapes.len())));
     }
-    let mut features = Vec::with_capacity(shapes.len());
+    let all = shapes.len();
+    let mut features = Vec::with_capacity(all);
     for ((shape, attributes), number) in shapes.into_iter().zip(records).zip(1..) {
+        let Some(attributes) = attributes else { continue };
         let kind = shape.shapetype().to_string();
         let rings: Vec<LineString> = match shape {
             Shape::Polygon(polygon) => {
@@ -112,58 +129,42 @@ fn shapefile(
             Shape::PolygonZ(polygon) => {
                 polygon.rings().iter().map(|ring| line(ring.points(), |p| (p.x, p.y))).collect()
             }
-            Shape::NullShape => Vec::new(),
+            Shape::NullShape => continue,
             _ => return Err(no_polygon(path, number, &kind)),
         };
-        features.push(Feature { polygons: nested(rings), attributes });
+        if !rings.iter().flatten().all(|corner| corner.x.is_finite() && corner.y.is_finite()) {
+            let problem = "a corner of it is not a number; draw it again, or delete it".to_owned();
+            return Err(ReleaseError::Shape { path: path.into(), feature: number, problem });
+        }
+        features.push(Feature { number, polygons: nested(rings), attributes });
     }
-    Ok(Layer { name: path.into(), features, crs })
+    let left_out = all - features.len();
+    Ok(Layer { name: path.into(), features, crs, left_out })
 }
 
 fn line<P>(points: &[P], place: impl Fn(&P) -> (f64, f64)) -> LineString {
     points.iter().map(place).collect::<Vec<_>>().into()
 }
 
-/// Letters outside ASCII in an old code page do not matter to numbers.
-fn tables() -> dbase::ReaderBuilder {
-    dbase::ReaderBuilder::new().with_encoding(dbase::UnicodeLossy)
-}
-
-/// Records in the order of the file.
-fn attributes(mut reader: dbase::Reader<impl Read + Seek>) -> Result<Vec<Attributes>, dbase::Error> {
-    let names: Vec<String> = reader.fields().iter().map(|field| field.name().to_string()).collect();
-    let texts = |record: dbase::Record| {
-        let text = |name: &String| (name.clone(), record.get(name).map(text).unwrap_or_default());
-        names.iter().map(text).collect()
-    };
-    Ok(reader.read()?.into_iter().map(texts).collect())
-}
-
-fn text(value: &FieldValue) -> String {
-    let text = match value {
-        FieldValue::Numeric(value) => value.map(|v| v.to_string()),
-        FieldValue::Float(value) => value.map(|v| v.to_string()),
-        FieldValue::Double(value) | FieldValue::Currency(value) => Some(value.to_string()),
-        FieldValue::Integer(value) => Some(value.to_string()),
-        FieldValue::Character(text) => text.clone(),
-        FieldValue::Memo(text) => Some(text.clone()),
-        other => Some(format!("{other:?}")),
-    };
-    text.unwrap_or_default()
-}
-
 /// Polygons with holes from loose rings by how deep they lie in one another, whatever their order and direction.
 fn nested(rings: Vec<LineString>) -> Vec<Polygon> {
     let mut discs: Vec<Polygon> = rings.into_iter().map(|ring| Polygon::new(ring, Vec::new())).collect();
-    discs.retain(|disc| disc.unsigned_area() > 0.0);
+    // A ring without area may be one that crosses itself: that is for the caller to refuse.
+    discs.retain(|disc| !disc.exterior().0.is_empty());
     discs.sort_by(|a, b| b.unsigned_area().total_cmp(&a.unsigned_area()));
     let mut polygons: Vec<Polygon> = Vec::new();
     let mut depths = Vec::new();
     let mut owners: Vec<usize> = Vec::new();
+    let boxes = boxes(&discs);
     for (k, disc) in discs.iter().enumerate() {
-        let point = disc.interior_point();
-        let around: Vec<usize> =
-            (0..k).filter(|&j| point.is_some_and(|point| discs[j].contains(&point))).collect();
+        let around: Vec<usize> = match disc.interior_point() {
+            Some(point) => boxes
+                .locate_all_at_point(&[point.x(), point.y()])
+                .map(|found| found.data)
+                .filter(|&j| j < k && discs[j].contains(&point))
+                .collect(),
+            None => Vec::new(),
+        };
         depths.push(around.len());
         let parent = around.into_iter().max_by_key(|&j| depths[j]);
         match parent.filter(|_| depths[k] % 2 == 1) {
@@ -194,12 +195,15 @@ fn geojson(path: &Path, bytes: &[u8]) -> Result<Layer, ReleaseError> {
         GeoJson::Feature(feature) => (vec![feature.clone()], feature.foreign_members),
         GeoJson::FeatureCollection(collection) => (collection.features, collection.foreign_members),
     };
-    let features = features.into_iter().zip(1..).map(|(feature, number)| {
+    let all = features.len();
+    let shaped = features.into_iter().zip(1..).filter_map(|(mut feature, number)| {
+        let geometry = feature.geometry.take()?;
+        Some((feature, geometry, number))
+    });
+    let features = shaped.map(|(feature, geometry, number)| {
         let mut polygons = Vec::new();
-        if let Some(geometry) = feature.geometry {
-            let geometry = Geometry::<f64>::try_from(geometry).map_err(|e| unreadable(path, e))?;
-            collect(geometry, &mut polygons).map_err(|kind| no_polygon(path, number, kind))?;
-        }
+        let geometry = Geometry::<f64>::try_from(geometry).map_err(|e| unreadable(path, e))?;
+        collect(geometry, &mut polygons).map_err(|kind| no_polygon(path, number, kind))?;
         let text = |value: geojson::JsonValue| match value {
             geojson::JsonValue::String(text) => text,
             geojson::JsonValue::Null => String::new(),
@@ -207,18 +211,27 @@ fn geojson(path: &Path, bytes: &[u8]) -> Result<Layer, ReleaseError> {
         };
         let properties = feature.properties.unwrap_or_default();
         let attributes = properties.into_iter().map(|(name, value)| (name, text(value))).collect();
-        Ok(Feature { polygons, attributes })
+        Ok(Feature { number, polygons, attributes })
     });
-    Ok(Layer {
-        name: path.into(),
-        features: features.collect::<Result<_, ReleaseError>>()?,
-        crs: members.as_ref().and_then(named),
-    })
+    let features = features.collect::<Result<Vec<_>, ReleaseError>>()?;
+    let crs = match members.as_ref().and_then(|members| members.get("crs")).filter(|crs| !crs.is_null()) {
+        Some(crs) => Some(named(crs).ok_or_else(|| {
+            let cure = format!("ogr2ogr -a_srs EPSG:xxxx named.geojson {}", path.display());
+            unreadable(path, format!("its `crs` {crs} is not understood; name it with\n  {cure}"))
+        })?),
+        None => None,
+    };
+    let left_out = all - features.len();
+    Ok(Layer { name: path.into(), features, crs, left_out })
 }
 
 /// The system that the member `crs` names (GeoJSON of 2008; RFC 7946 dropped it, GDAL and QGIS still write it).
-fn named(members: &JsonObject) -> Option<Crs> {
-    let name = members.get("crs")?.get("properties")?.get("name")?.as_str()?;
+fn named(crs: &geojson::JsonValue) -> Option<Crs> {
+    let properties = crs.get("properties")?;
+    if let Some(code) = properties.get("code") {
+        return Crs::parse(&format!("EPSG:{code}")).ok();
+    }
+    let name = properties.get("name")?.as_str()?;
     let name = if name.ends_with("CRS84") { "EPSG:4326" } else { name };
     Crs::parse(name).ok()
 }

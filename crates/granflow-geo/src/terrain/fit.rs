@@ -111,6 +111,13 @@ fn ragged(bed: &Raster, column: usize, row: usize, m: usize) -> Fit {
     if let Some(a) = window.solve::<3>(m) {
         return Fit { gradient: [a[1] / cell, a[2] / cell], hessian: [0.0; 3] };
     }
+    from_differences(bed, column, row)
+}
+
+/// The gradient by differences towards the neighbours there are, level without any.
+pub(super) fn from_differences(bed: &Raster, column: usize, row: usize) -> Fit {
+    let window = Window { bed, column, row };
+    let cell = bed.cell;
     let difference = |forward: Option<f64>, backward: Option<f64>| match (forward, backward) {
         (Some(forward), Some(backward)) => (forward - backward) / (2.0 * cell),
         (Some(rise), None) => rise / cell,
@@ -174,7 +181,7 @@ fn mirrored(u: isize, v: isize) -> [Option<(isize, isize)>; 4] {
 }
 
 /// Solves a symmetric positive definite system given by its upper triangle, `None` where a pivot is below [`DEGENERATE`].
-fn eliminate<const N: usize>(mut matrix: [[f64; N]; N], mut right: [f64; N]) -> Option<[f64; N]> {
+pub(super) fn eliminate<const N: usize>(mut matrix: [[f64; N]; N], mut right: [f64; N]) -> Option<[f64; N]> {
     let diagonal: [f64; N] = std::array::from_fn(|k| matrix[k][k]);
     for k in 0..N {
         if diagonal[k] == 0.0 || matrix[k][k] <= DEGENERATE * diagonal[k] {

@@ -115,6 +115,12 @@ pub trait Domain: Any + fmt::Debug + Send + Sync {
         None
     }
 
+    /// What a user should know of the files that were read for it, one sentence each, beginning with `note: ` or
+    /// `warning: `.
+    fn remarks(&self) -> Vec<String> {
+        Vec::new()
+    }
+
     /// Elevation of the cells; where it is NaN no quantity of the cells has a value.
     fn elevation(&self) -> Option<&[f64]> {
         None

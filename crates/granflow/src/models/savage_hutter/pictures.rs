@@ -72,6 +72,7 @@ fn terrain(file: &ResultFile, centres: [&[f64]; 2]) -> Result<Arc<dyn Domain>, S
         release: Arc::new(Sparse::of(file.first("thickness", 2)?)),
         density: f64::NAN,
         threshold: threshold(&file.text("threshold")),
+        remarks: Vec::new(),
     }))
 }
 

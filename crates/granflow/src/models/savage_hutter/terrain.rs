@@ -12,6 +12,7 @@ use crate::output::outlines::{Lattice, Outline, contour};
 use crate::output::summary::Summary;
 use crate::raster::Raster;
 use crate::release::Sparse;
+use granflow_geo::Remark;
 use std::borrow::Cow;
 use std::sync::Arc;
 
@@ -35,6 +36,8 @@ pub struct TerrainDomain {
     pub density: f64,
     /// Thickness normal to the bed that a layer must exceed to count: outside that its maps have no value \[m\].
     pub threshold: f64,
+    /// What was decided while the files of the case were read, and what looks wrong in them.
+    pub remarks: Vec<Remark>,
 }
 
 impl Domain for TerrainDomain {
@@ -52,6 +55,10 @@ impl Domain for TerrainDomain {
 
     fn keeps(&self, series: &Quantity, dimensions: usize) -> bool {
         series.name != "velocity_y" || dimensions > 1
+    }
+
+    fn remarks(&self) -> Vec<String> {
+        self.remarks.iter().map(ToString::to_string).collect()
     }
 
     fn elevation(&self) -> Option<&[f64]> {

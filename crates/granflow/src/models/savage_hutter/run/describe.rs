@@ -2,7 +2,7 @@
 
 use super::chute;
 #[cfg(feature = "geo")]
-use super::terrain;
+use super::terrain::{self, Loaded};
 use crate::StartError;
 use crate::describe::{Line, axis, case, effort, range};
 use crate::run::Run;
@@ -12,7 +12,9 @@ use granflow_case::chute::Plan as OnChute;
 use granflow_case::terrain::{Plan as OnTerrain, TerrainScheme};
 use granflow_case::{Axis, RunPlan, Side};
 #[cfg(feature = "geo")]
-use granflow_geo::terrain::Terrain;
+use granflow_geo::raster::Crs;
+#[cfg(feature = "geo")]
+use granflow_geo::terrain::{Pits, Survey};
 
 /// A fast avalanche \[m/s\].
 #[cfg(feature = "geo")]
@@ -41,9 +43,11 @@ pub(crate) fn terrain(run: &RunPlan, plan: &OnTerrain) -> Result<Vec<Line>, Star
     };
     let mut lines = case(run, material(&plan.material), &format!("{order}, film {:e}, ", plan.scheme.film));
     lines.push(threshold(run, " m"));
-    let (bed, release) = terrain::load(run, plan)?;
-    lines.extend(mountain(&bed, plan.material.gravity));
-    lines.extend(start(run, &mut *terrain::simulate(run, plan, bed, release)?));
+    let loaded = terrain::load(run, plan)?;
+    lines.extend(mountain(&loaded, plan.material.gravity));
+    let remarks: Vec<Line> = loaded.remarks.iter().map(|one| (one.kind(), one.text().to_owned())).collect();
+    lines.extend(start(run, &mut *terrain::simulate(run, plan, loaded)?));
+    lines.extend(remarks);
     Ok(lines)
 }
 
@@ -99,24 +103,62 @@ fn grid(plan: &OnChute) -> Vec<Line> {
     lines
 }
 
+/// A mountain: size, steepness, what looks odd, curvature under a fast mass, systems and releases.
 #[cfg(feature = "geo")]
-/// A mountain: size, steepness, curvature under a fast mass.
-fn mountain(terrain: &Terrain, gravity: f64) -> Vec<Line> {
-    let bed = &terrain.bed;
-    let nodata = bed.values.iter().filter(|z| z.is_nan()).count();
-    let steep = terrain.steepness(60_f64.to_radians());
-    let (low, high) = bed.range().unwrap_or_default();
-    // Where the bed is convex, N = g c + c w^T (D^2 b) w vanishes at |w|^2 = g/|smallest eigenvalue of D^2 b|.
-    let convex = |h: &[f64; 3]| 0.5 * (h[0] + h[2]) - (0.25 * (h[0] - h[2]).powi(2) + h[1] * h[1]).sqrt();
-    let flies = terrain.count(|fit| -convex(&fit.hessian) * FAST * FAST > gravity);
-    let valid = (bed.values.len() - nodata).max(1);
-    let share = 100.0 * flies as f64 / valid as f64;
+fn mountain(loaded: &Loaded, gravity: f64) -> Vec<Line> {
+    let (bed, Survey { missing, range: [low, high], step, step_at, .. }) =
+        (&loaded.terrain.bed, &loaded.survey);
+    let share = |count: usize, all: usize| 100.0 * count as f64 / all.max(1) as f64;
+    let (all, with) = (bed.values.len(), bed.values.len() - missing);
+    let steep = loaded.terrain.steepness(60_f64.to_radians());
     let size = format!("{} x {} cells of {} m", bed.columns, bed.rows, bed.cell);
-    let steepest = steep.max_slope.to_degrees();
-    vec![
-        ("terrain", format!("{size}, {nodata} without elevation")),
-        ("", format!("{low:.1} to {high:.1} m")),
-        ("steep", format!("{} cells above 60 deg, steepest {steepest:.1} deg", steep.steeper)),
-        ("curvature", format!("{share:.2} % of the cells throw a mass of {FAST} m/s into the air (N < 0)")),
-    ]
+    let system = |crs: Option<String>| crs.unwrap_or_else(|| "no coordinate reference system".to_owned());
+    let [x, y] = step_at;
+    let mut lines = vec![
+        ("terrain", format!("{size}, {missing} without elevation ({:.1} %)", share(*missing, all))),
+        ("", system(bed.crs.as_ref().map(Crs::describe))),
+        ("", format!("{low:.1} to {high:.1} m, largest step between cells {step:.1} m at ({x:.1}, {y:.1})")),
+        (
+            "steep",
+            format!(
+                "{} cells above 60 deg ({:.1} %), steepest {:.1} deg",
+                steep.steeper,
+                share(steep.steeper, with),
+                steep.max_slope.to_degrees()
+            ),
+        ),
+        ("curvature", curvature(loaded, gravity, with)),
+    ];
+    let parts = loaded.parts.iter().zip(std::iter::once("release").chain(std::iter::repeat("")));
+    lines.extend(parts.map(|((name, crs, volume), title)| {
+        let crs = if name == "cap" { String::new() } else { format!(", {}", system(crs.clone())) };
+        (title, format!("{name}{crs}, {volume:.1} m3"))
+    }));
+    let released = loaded.parts.iter().map(|(_, _, volume)| volume).sum();
+    lines.push(("pits", pits(&Pits::of(bed), released)));
+    lines
+}
+
+/// What cannot run out of the terrain, beside the release.
+#[cfg(feature = "geo")]
+fn pits(pits: &Pits, released: f64) -> String {
+    if pits.cells == 0 {
+        return "none".to_owned();
+    }
+    let Pits { cells, volume, depth, place: [x, y] } = pits;
+    let share = 100.0 * volume / released;
+    let hold = if *cells == 1 { "cell holds" } else { "cells hold" };
+    format!(
+        "{cells} {hold} up to {volume:.0} m3 ({share:.1} % of the release), the deepest {depth:.1} m at ({x:.1}, {y:.1})"
+    )
+}
+
+/// Where a fast mass leaves the ground: where the bed is convex, N = g c + c w^T (D^2 b) w vanishes at |w|^2 = g/|smallest
+/// eigenvalue of D^2 b|.
+#[cfg(feature = "geo")]
+fn curvature(loaded: &Loaded, gravity: f64, with: usize) -> String {
+    let convex = |h: &[f64; 3]| 0.5 * (h[0] + h[2]) - (0.25 * (h[0] - h[2]).powi(2) + h[1] * h[1]).sqrt();
+    let flies = loaded.terrain.count(|fit| -convex(&fit.hessian) * FAST * FAST > gravity);
+    let share = 100.0 * flies as f64 / with.max(1) as f64;
+    format!("{share:.2} % of the cells throw a mass of {FAST} m/s into the air (N < 0)")
 }

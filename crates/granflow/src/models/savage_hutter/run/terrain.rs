@@ -10,9 +10,10 @@ use granflow_case::terrain::{Extent, Measured, Plan, Release, TerrainScheme, Thi
 use granflow_engine::grid::Grid;
 use granflow_engine::kernels::Kernel;
 use granflow_engine::simulation::Simulation;
-use granflow_geo::raster::{Crs, Raster};
+use granflow_geo::Remark;
+use granflow_geo::raster::{Crs, Raster, Reading};
 use granflow_geo::release::{self, Sparse};
-use granflow_geo::terrain::{Curvature, Terrain};
+use granflow_geo::terrain::{Curvature, Survey, Terrain};
 use granflow_model::savage_hutter::balanced::Balanced;
 use granflow_model::savage_hutter::energy_stable::EnergyStable;
 use granflow_model::savage_hutter::{Flow, ground};
@@ -24,8 +25,19 @@ const MAX_CELLS: f64 = (1_u64 << 36) as f64;
 
 /// The run of a case on a mountain.
 pub(crate) fn start(run: &RunPlan, plan: &Plan) -> Result<Box<dyn Run>, StartError> {
-    let (terrain, release) = load(run, plan)?;
-    simulate(run, plan, terrain, release)
+    simulate(run, plan, load(run, plan)?)
+}
+
+/// A mountain and what is released on it, as they were read.
+pub(super) struct Loaded {
+    pub terrain: Terrain,
+    /// Released volume per plan area H \[m\].
+    pub release: Sparse,
+    /// Each release by the name of its file or kind, the system that its file says, and its volume \[m^3\].
+    pub parts: Vec<(String, Option<String>, f64)>,
+    /// What was decided while reading, and what looks wrong.
+    pub remarks: Vec<Remark>,
+    pub survey: Survey,
 }
 
 /// The run on a mountain that was read. The derivatives of the bed are fitted cell by cell as the simulation asks for its
@@ -33,8 +45,7 @@ pub(crate) fn start(run: &RunPlan, plan: &Plan) -> Result<Box<dyn Run>, StartErr
 pub(super) fn simulate(
     run: &RunPlan,
     plan: &Plan,
-    terrain: Terrain,
-    release: Sparse,
+    Loaded { terrain, release, remarks, .. }: Loaded,
 ) -> Result<Box<dyn Run>, StartError> {
     let (bed, gravity) = (&terrain.bed, plan.material.gravity);
     let columns = bed.columns;
@@ -51,6 +62,7 @@ pub(super) fn simulate(
         release: Arc::new(thickness),
         density: plan.material.density,
         threshold: run.output.threshold,
+        remarks,
     };
     let plane = Plane::of(&grid, Arc::new(domain));
     let (law, film) = (plan.material.law, plan.scheme.film);
@@ -118,15 +130,19 @@ pub(crate) fn ground_at(
     ground::Terrain::of(level, fit.gradient, fit.cosine(), fit.hessian, gravity)
 }
 
-/// Elevation, and released volume per plan area H \[m\].
-pub(super) fn load(run: &RunPlan, plan: &Plan) -> Result<(Terrain, Sparse), StartError> {
-    let terrain = bed(run, plan)?;
-    let mut release = Sparse::default();
+/// Reads the elevation and the releases.
+pub(super) fn load(run: &RunPlan, plan: &Plan) -> Result<Loaded, StartError> {
+    let mut remarks = Vec::new();
+    let (bed, crs) = bed(run, plan, &mut remarks)?;
+    let survey = Survey::of(&bed);
+    remarks.extend(survey.warnings(&plan.dem.display().to_string()));
+    let terrain = curved(run, plan, bed)?;
+    let mut loaded = Loaded { terrain, release: Sparse::default(), parts: Vec::new(), remarks, survey };
     for one in &plan.releases {
-        release = release.plus(volume(one, &terrain)?);
+        add(&mut loaded, one, crs.as_ref())?;
     }
     trim();
-    Ok((terrain, release))
+    Ok(loaded)
 }
 
 /// Hands back to the system what reading has left: the allocator would keep it for more of the same, and none will come.
@@ -138,52 +154,80 @@ fn trim() {
     }
 }
 
-/// The elevation on the cells that the case asks for.
-fn bed(run: &RunPlan, plan: &Plan) -> Result<Terrain, StartError> {
+/// The elevation on the cells that the case asks for, and the system that the case gives.
+fn bed(run: &RunPlan, plan: &Plan, remarks: &mut Vec<Remark>) -> Result<(Raster, Option<Crs>), StartError> {
     let crs = match &plan.crs {
         Some(text) => Some(Crs::parse(text).map_err(|error| {
             run.fault("terrain.crs", error.to_string(), "write it as crs = \"EPSG:31287\"")
         })?),
         None => None,
     };
-    let mut bed = Raster::read_in(&plan.dem, crs.as_ref())?;
-    let [width, height] = [bed.columns, bed.rows].map(|count| count as f64 * bed.cell);
-    if let Some(cell) = plan.cell {
-        let [columns, rows] = [width / cell, height / cell];
-        if columns < 3.0 || rows < 3.0 || columns * rows > MAX_CELLS {
-            let message = format!(
-                "cells of {cell} m cut the terrain of {width} m x {height} m into {columns:.1} x {rows:.1}"
-            );
-            let cure = "allowed are at least 3 along each side, and not more than a machine holds";
-            return Err(run.fault("terrain.cell", message, cure).into());
-        }
-        bed = bed.resample(cell);
+    let reading = Reading::of(&plan.dem, crs.as_ref())?;
+    remarks.extend(reading.notes);
+    let bed = reading.raster;
+    if bed.crs.is_none() {
+        remarks.push(Remark::Note(format!(
+            "{}: it says no coordinate reference system; its coordinates were taken as metres (crs = \"EPSG:xxxx\" in \
+             [terrain] names one)",
+            plan.dem.display()
+        )));
     }
+    let Some(cell) = plan.cell else { return Ok((bed, crs)) };
+    let [width, height] = [bed.columns, bed.rows].map(|count| count as f64 * bed.cell);
+    let [columns, rows] = [width / cell, height / cell];
+    if columns < 3.0 || rows < 3.0 || columns * rows > MAX_CELLS {
+        let message = format!(
+            "cells of {cell} m cut the terrain of {width} m x {height} m into {columns:.1} x {rows:.1}"
+        );
+        let cure = "allowed are at least 3 along each side, and not more than a machine holds";
+        return Err(run.fault("terrain.cell", message, cure).into());
+    }
+    Ok((bed.resample(cell), crs))
+}
+
+/// The bed with the window of the case around its cells.
+fn curved(run: &RunPlan, plan: &Plan, bed: Raster) -> Result<Terrain, StartError> {
+    let [width, height] = [bed.columns, bed.rows].map(|count| count as f64 * bed.cell);
     if let Some(length) = plan.curvature.filter(|length| *length > width.min(height)) {
         let message = format!("a window of {length} m is wider than the terrain of {width} m x {height} m");
         let cure = "the window spans a few cells, for instance length = \"20 m\"";
         return Err(run.fault("terrain.curvature.length", message, cure).into());
     }
-    let curvature = plan.curvature.map_or(Curvature::Off, Curvature::Length);
-    Ok(Terrain::new(bed, curvature))
+    Ok(Terrain::new(bed, plan.curvature.map_or(Curvature::Off, Curvature::Length)))
 }
 
-/// Volume per plan area that one release gives to the cells.
-fn volume(one: &Release, terrain: &Terrain) -> Result<Sparse, StartError> {
-    let cells = match &one.extent {
+/// Adds the volume per plan area of one release.
+fn add(loaded: &mut Loaded, one: &Release, crs: Option<&Crs>) -> Result<(), StartError> {
+    let bed = &loaded.terrain.bed;
+    let (name, system, cells) = match &one.extent {
         Extent::Polygons { path, thickness } => {
             let thickness = match thickness {
                 Thickness::Constant(value) => release::Thickness::Value(*value),
                 Thickness::Attribute(name) => release::Thickness::Attribute(name.attribute.clone()),
             };
-            release::polygons(path, &thickness, &terrain.bed)?
+            let layer = release::Layer::read(path)?;
+            loaded.remarks.extend(layer.notes(bed));
+            let system = layer.crs().map(Crs::describe);
+            (path.display().to_string(), system, layer.thickness(&thickness, bed)?)
         }
-        Extent::Raster(path) => release::raster(path, &terrain.bed)?,
-        Extent::Cap(cap) => release::cap(cap.height, cap.centre, cap.radius, &terrain.bed)?,
+        Extent::Raster(path) => {
+            let reading = Reading::of(path, bed.crs.as_ref().or(crs))?;
+            loaded.remarks.extend(reading.notes);
+            let system = reading.raster.crs.as_ref().map(Crs::describe);
+            (path.display().to_string(), system, release::carried(path, &reading.raster, bed)?)
+        }
+        Extent::Cap(cap) => {
+            let cells = release::cap(cap.height, cap.centre, cap.radius, bed)?;
+            ("cap".to_owned(), None, cells)
+        }
     };
     let measured = match one.measured {
         Measured::Normal => release::Measured::Normal,
         Measured::Vertical => release::Measured::Vertical,
     };
-    Ok(release::per_plan_area(cells, terrain, measured))
+    let volume = release::per_plan_area(cells, &loaded.terrain, measured);
+    let total = volume.iter().map(|(_, height)| height).sum::<f64>() * bed.cell * bed.cell;
+    loaded.parts.push((name, system, total));
+    loaded.release = std::mem::take(&mut loaded.release).plus(volume);
+    Ok(())
 }
