@@ -1,10 +1,12 @@
 //! Progress on standard error: a bar on a terminal, plain lines every few seconds elsewhere.
 
-use std::io::{self, IsTerminal, Write};
+use std::io::{self, IsTerminal};
 use std::time::{Duration, Instant};
 
 use granflow::Words;
 use granflow::run::Run;
+
+use crate::failure::tell;
 
 /// Between two plain lines.
 const PLAIN: Duration = Duration::from_secs(5);
@@ -139,12 +141,6 @@ fn bar(share: f64, line: &str) -> String {
     let full = (share * WIDTH as f64) as usize;
     let [full, empty] = ["█".repeat(full), "░".repeat(WIDTH - full)];
     format!("{CLEAR}\x1b[?7l{full}{empty} {:>3.0} % {line}\x1b[?7h", 100.0 * share)
-}
-
-/// Writes on standard error at once; nobody is left to be told if it is closed.
-fn tell(text: &str) {
-    let mut out = io::stderr().lock();
-    let _ = out.write_all(text.as_bytes()).and_then(|()| out.flush());
 }
 
 #[cfg(test)]

@@ -2,14 +2,16 @@
 
 use std::num::NonZeroUsize;
 use std::path::{Path, PathBuf};
+use std::sync::atomic::AtomicBool;
 
 use granflow::Checked;
 use granflow::output::summary::StopReason;
 use granflow::results::{FILM_SHARE, Finished};
 use granflow::run::Run;
-use granflow::session::Options;
+use granflow::session::{Options, RunError};
+use granflow::sinks::BeginError;
 
-use crate::failure::{Failure, print};
+use crate::failure::{Failure, print, tell};
 use crate::interrupt;
 use crate::progress::Progress;
 
@@ -34,10 +36,18 @@ impl RunOptions {
     }
 }
 
-/// Computes a case, writes its results and says in one line how it ended.
+/// Computes a case, writes its results and says in one line how it ended. A run that had ended before is left as it is.
 pub fn run(case: Checked, options: &RunOptions) -> Result<(), Failure> {
-    let finished = compute(case, options)?;
-    if options.quiet { Ok(()) } else { print(&format!("{}\n", line(&finished))) }
+    let text = match attempt(case, options, interrupt::listen()?) {
+        Err(RunError::Begin(ended @ BeginError::Ended { .. })) => format!("{ended}\n"),
+        done => {
+            let finished = judged(done?)?;
+            let line = line(&finished);
+            finished.close().map_err(RunError::from)?;
+            format!("{line}\n")
+        }
+    };
+    if options.quiet { Ok(()) } else { print(&text) }
 }
 
 /// How a run ended, in one line.
@@ -56,24 +66,38 @@ fn line(finished: &Finished) -> String {
 
 /// Computes a case and writes its results, also those of a run that was interrupted.
 pub fn compute(case: Checked, options: &RunOptions) -> Result<Finished, Failure> {
-    let stop = interrupt::listen()?;
+    judged(attempt(case, options, interrupt::listen()?)?)
+}
+
+fn attempt(case: Checked, options: &RunOptions, stop: &AtomicBool) -> Result<Finished, RunError> {
     let mut progress = Progress::new(options.quiet, case.plan().ends.time);
+    let notice: fn(&str) = if options.quiet { |_| () } else { |text| tell(&format!("note: {text}\n")) };
     let options = Options {
         directory: options.directory(case.plan().source_name()),
         threads: options.threads.map_or(0, NonZeroUsize::get),
         resume: options.resume,
-        command: std::env::args().collect::<Vec<_>>().join(" "),
+        command: command(),
+        notice,
     };
     let finished = case.compute(&options, stop, &mut |run: &dyn Run| progress.show(run));
     progress.finish();
-    let finished = finished?;
+    finished
+}
+
+/// The command, in which what is no text is marked as such.
+fn command() -> String {
+    std::env::args_os().map(|word| word.to_string_lossy().into_owned()).collect::<Vec<_>>().join(" ")
+}
+
+/// A run that was interrupted is a failure, and much in films a warning.
+fn judged(finished: Finished) -> Result<Finished, Failure> {
     let summary = &finished.summary;
     if summary.film_share() > FILM_SHARE {
-        eprintln!(
-            "warning: {:.2} % of the mass is in films thinner than {:e}; a smaller scheme.film moves them",
+        tell(&format!(
+            "warning: {:.2} % of the mass is in films thinner than {:e}; a smaller scheme.film moves them\n",
             100.0 * summary.film_share(),
             finished.film
-        );
+        ));
     }
     if summary.stop_reason == StopReason::Interrupted {
         return Err(Failure::Interrupted(format!("{}; --resume goes on", line(&finished))));

@@ -50,6 +50,7 @@ pub(super) fn plan(
         notes: scheme.note().into_iter().chain(ends.note()).collect(),
         ends,
         output,
+        inputs: Vec::new(),
         source: look.source.clone(),
     }
 }

@@ -89,7 +89,7 @@ where
         }
         vec![("deposit", deposit), ("yield_margin", margin)]
     }
-    fn numbers(&self, simulation: &Simulation<D, S>, _record: &Record) -> Numbers {
+    fn numbers(&self, simulation: &Simulation<D, S>, _drift: &[f64], _record: &Record) -> Numbers {
         let totals = simulation.totals();
         let share = if totals.volume == 0.0 { 0.0 } else { totals.film / totals.volume };
         vec![
