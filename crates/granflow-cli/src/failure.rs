@@ -82,6 +82,9 @@ impl From<StartError> for Failure {
         match error {
             StartError::Case(error) => error.into(),
             StartError::Raster(_) | StartError::Release(_) => Self::File(error.to_string()),
+            StartError::Memory { .. } => {
+                Self::usage(error.to_string(), "granflow check says what a case needs")
+            }
             StartError::Build(_) => Self::Computation(error.to_string()),
             StartError::Feature { .. } => {
                 Self::usage(error.to_string(), "cargo build with default features has all")

@@ -106,6 +106,9 @@ pub trait Run: Send + Sync {
     /// What does not fit, in words.
     fn restore(&mut self, saved: Saved<'static>) -> Result<(), String>;
 
+    /// Bytes that a cell takes while the run computes, with its maps; `instants` says whether sinks look into steps.
+    fn bytes_per_cell(&self, instants: bool) -> usize;
+
     /// Time reached.
     fn time(&self) -> f64 {
         self.stepper().time()

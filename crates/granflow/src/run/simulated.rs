@@ -270,6 +270,14 @@ impl<const D: usize, P: Physics<D>> Run for Simulated<D, P> {
         self.physics.numbers(&self.simulation, self.drift(), &self.record)
     }
 
+    fn bytes_per_cell(&self, instants: bool) -> usize {
+        let maps = self.has_speed();
+        if instants {
+            return self.stepper().bytes_per_cell(maps);
+        }
+        Simulation::<D, P::Scheme>::bytes_per_cell(maps)
+    }
+
     fn save(&self) -> Saved<'_> {
         let maps = self.simulation.maps().into_iter().flat_map(granflow_engine::Maps::named);
         Saved {
