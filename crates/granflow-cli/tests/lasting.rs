@@ -39,8 +39,8 @@ struct Long {
 }
 
 const CHUTE: &str = r#"
-grid.x = { from = -6.0, to = 6.0, cells = 130 }
-grid.y = { from = -4.0, to = 4.0, cells = 90 }
+grid.x = { from = -6.0, to = 6.0, cells = 200 }
+grid.y = { from = -4.0, to = 4.0, cells = 140 }
 material = { slope = "10 deg", friction.coulomb = { angle = "22 deg" } }
 initial.thickness.cap = { height = 1.0, radius = 2.0 }
 time = { until = "rest", end = 40.0 }
@@ -49,8 +49,8 @@ output = { every = 0.25, files = ["netcdf", "csv"] }
 
 const PILE: &str = r#"
 model = "hadeler_kuttler"
-grid = { x = { from = 0.0, to = 1.0, cells = 40 }, y = { from = 0.0, to = 1.0, cells = 40 } }
-source = [{ rate = 0.5, until = 0.7 }, { rate = 0.3, from = 0.4, until = 1.3 }]
+grid = { x = { from = 0.0, to = 1.0, cells = 60 }, y = { from = 0.0, to = 1.0, cells = 60 } }
+source = [{ rate = 0.5, to = 0.7 }, { rate = 0.3, from = 0.4, to = 1.3 }]
 time = { until = "steady", end = 4.0 }
 output = { every = 0.05, files = ["netcdf"] }
 "#;
@@ -58,7 +58,7 @@ output = { every = 0.05, files = ["netcdf"] }
 const MOVING: &str = r#"
 model = "hadeler_kuttler"
 grid = { x = { from = 0.0, to = 1.0, cells = 48 }, y = { from = 0.0, to = 1.0, cells = 48 } }
-source = [{ rate = "if((x - 0.5 - 0.2*cos(t))^2 + (y - 0.5 - 0.2*sin(t))^2 < 0.01, 1, 0)" }]
+source = [{ rate = { formula = "max(0, 1 - 20*((x - 0.5 - 0.2*cos(t))^2 + (y - 0.5 - 0.2*sin(t))^2))" } }]
 time = { end = 4.0 }
 output = { every = 0.05, files = ["netcdf"] }
 "#;
