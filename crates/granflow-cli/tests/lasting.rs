@@ -322,3 +322,62 @@ fn no_strange_surrounding_makes_it_panic() {
     assert!(!told(&output).contains("panicked") && output.status.success(), "{}", told(&output));
     assert!(folder.path().join(&strange).join("out/result.nc").exists());
 }
+
+/// The largest memory of a process so far, and then of its whole life, in bytes: what Linux says of it.
+#[cfg(target_os = "linux")]
+fn peak_of(mut child: Child) -> f64 {
+    let status = format!("/proc/{}/status", child.id());
+    let mut peak = 0.0_f64;
+    while child.try_wait().unwrap().is_none() {
+        let text = fs::read_to_string(&status).unwrap_or_default();
+        let line = text.lines().find_map(|line| line.strip_prefix("VmHWM:"));
+        let kilo = line.and_then(|rest| rest.trim().strip_suffix("kB")?.trim().parse::<f64>().ok());
+        peak = peak.max(1024.0 * kilo.unwrap_or(0.0));
+        std::thread::sleep(Duration::from_millis(2));
+    }
+    assert!(child.wait().unwrap().success());
+    peak
+}
+
+/// What `check` says of the memory is what the process takes, for every model and for files that need much.
+#[test]
+#[cfg(target_os = "linux")]
+fn the_memory_that_check_says_is_the_peak_of_the_run() {
+    let plane = &["grid.x.cells=1000", "grid.y.cells=1000", "time={steps=4}"][..];
+    for (text, sets) in [
+        (CHUTE, [plane, &["output={steps=2,files=[\"netcdf\"]}"]].concat()),
+        (PILE, [plane, &["output={steps=2,files=[\"netcdf\",\"csv\"]}"]].concat()),
+        ("", vec!["terrain.cell=1", "time={steps=4}", "output={steps=2,files=[\"netcdf\"]}"]),
+        ("", vec!["terrain.cell=1", "time={steps=4}", "output={steps=2,files=[\"netcdf\",\"csv\",\"vtk\"]}"]),
+    ] {
+        let folder = tempfile::tempdir().unwrap();
+        Long { name: "large", text, sets: &[] }.write(folder.path());
+        let sets: Vec<&str> = sets.iter().flat_map(|set| ["--set", set]).collect();
+        let checked = granflow(folder.path(), &[&["check", "case.toml"], &*sets].concat());
+        let lines = String::from_utf8(checked.stdout).unwrap();
+        let said = lines.lines().find_map(|line| line.strip_prefix("memory")).unwrap().trim();
+        let number =
+            said.strip_prefix("about ").and_then(|said| said.strip_suffix(" MB at its peak")).unwrap();
+        let said = 1e6 * number.parse::<f64>().unwrap();
+        let mut command = Command::new(PROGRAM);
+        command.current_dir(folder.path()).args(["run", "case.toml", "-q", "--threads", "2"]).args(&sets);
+        let peak = peak_of(command.spawn().unwrap());
+        // 15 % where nothing else is at work; the pieces that wait to be written depend on the disk.
+        assert!((said / peak - 1.0).abs() < 0.2, "{sets:?}: said {said}, took {peak}");
+    }
+}
+
+#[test]
+fn what_cannot_fit_is_refused_before_it_is_asked_for() {
+    let folder = tempfile::tempdir().unwrap();
+    fs::write(folder.path().join("case.toml"), CHUTE).unwrap();
+    if cfg!(target_os = "linux") {
+        let output = granflow(
+            folder.path(),
+            &["run", "case.toml", "--set", "grid.x.cells=200000", "--set", "grid.y.cells=300000"],
+        );
+        assert_eq!(output.status.code(), Some(2), "{}", told(&output));
+        assert!(told(&output).contains("1.4 TB") && told(&output).contains("are free"), "{}", told(&output));
+        assert!(!folder.path().join("case").exists());
+    }
+}

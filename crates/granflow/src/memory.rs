@@ -10,10 +10,12 @@ const PROGRAM: f64 = 13e6;
 const PIECES: f64 = 33.6e6;
 /// Frames of a run whose end is not known.
 const FRAMES: u64 = 21;
-/// Numbers that figures and animation of a line hold for each of its cells and frames.
-const LINE: [(&str, f64); 2] = [("figures", 11.5), ("animation", 4.0)];
-/// Pictures of a plane while they are drawn, and bytes for each cell beside the maps.
-const PICTURES: (f64, f64) = (45e6, 32.0);
+/// Numbers for each cell and frame of a line that its animation holds.
+const ANIMATION: f64 = 4.0;
+/// Bytes for each cell that pictures of a plane take beside the maps, and those of maps that a line has at its end beside its
+/// fields: pieces so small stay with the allocator.
+const PICTURE: f64 = 32.0;
+const LINE: f64 = 32.0;
 
 /// How large a run is.
 pub(crate) struct Size {
@@ -23,10 +25,14 @@ pub(crate) struct Size {
     /// Bytes for each cell while it is set up, and while it computes.
     pub setup: f64,
     pub run: f64,
+    /// Bytes for each cell of a checkpoint.
+    pub saved: f64,
     /// Numbers for each cell that stay to the end: maps, elevation.
     pub maps: usize,
     /// Numbers of a frame.
     pub frame: usize,
+    /// Bytes of the pictures of a plane that are drawn at once; numbers that the figures of a line hold for each cell and frame.
+    pub drawn: f64,
 }
 
 impl Size {
@@ -43,24 +49,33 @@ impl Size {
     pub fn peak(&self, run: &RunPlan) -> f64 {
         let cells = self.cells as f64;
         let frames = run.output.frames.count(&run.ends).unwrap_or(FRAMES) as f64;
-        let pieces = PIECES.min(self.frame_bytes(run) * frames + self.run * cells);
-        let asked = |kind: &str| run.output.files.iter().any(|file| file.name == kind);
-        let maps = 8.0 * self.maps as f64 * cells;
-        let mut end = maps;
-        if self.line {
-            let held = LINE.iter().filter(|(kind, _)| asked(kind)).map(|(_, numbers)| numbers).sum::<f64>();
-            end += 8.0 * held * cells * frames;
-        } else {
-            if asked("csv") || asked("vtk") {
-                end += maps; // the tables have maps of their own
-            }
-            if ["figures", "animation", "report"].iter().any(|kind| asked(kind)) {
-                // What is drawn is drawn beside the other files.
-                end += PICTURES.0 + PICTURES.1 * cells;
-            }
-        }
+        // There are two checkpoints at least.
+        let pieces = PIECES.min(self.frame_bytes(run) * frames + 2.0 * self.saved * cells);
+        let end = if self.line { self.line_end(run, frames) } else { self.plane_end(run) };
         PROGRAM + (pieces + (self.run * cells).max(end)).max(self.setup * cells)
     }
+
+    /// Bytes while the files of a line are made.
+    fn line_end(&self, run: &RunPlan, frames: f64) -> f64 {
+        let of = |kind: &str, numbers: f64| if asked(run, kind) { numbers } else { 0.0 };
+        let held = of("figures", self.drawn) + of("animation", ANIMATION);
+        let cells = self.cells as f64;
+        ((self.run + LINE) * cells).max(8.0 * (self.maps as f64 + held * frames) * cells)
+    }
+
+    /// Bytes while the files of a plane are made.
+    fn plane_end(&self, run: &RunPlan) -> f64 {
+        let maps = 8.0 * self.maps as f64 * self.cells as f64;
+        // Tables have maps of their own.
+        let tables = ["csv", "vtk"].iter().filter(|kind| asked(run, kind)).count() as f64 * maps;
+        let drawn = ["figures", "animation", "report"].iter().any(|kind| asked(run, kind));
+        let pictures = if drawn { self.drawn + PICTURE * self.cells as f64 } else { 0.0 };
+        maps + tables.max(pictures)
+    }
+}
+
+fn asked(run: &RunPlan, kind: &str) -> bool {
+    run.output.files.iter().any(|file| file.name == kind)
 }
 
 /// Refuses what cannot fit before it is asked for.

@@ -400,6 +400,15 @@ fn what_was_changed_after_an_interruption_is_named() {
     begin(&case, &out, true, &mut |_| false).unwrap();
 }
 
+#[test]
+fn nothing_to_go_on_from_is_said_and_leaves_nothing_behind() {
+    let folder = tempfile::tempdir().unwrap();
+    let case = slope(folder.path(), r#"["netcdf"]"#);
+    let message = begin(&case, &folder.path().join("none"), true, &mut |_| false).unwrap_err().to_string();
+    assert!(message.contains("no checkpoint") && message.contains("without --resume"), "{message}");
+    assert!(!folder.path().join("none").exists());
+}
+
 /// Two runs at once would mix their files.
 #[test]
 fn a_second_run_in_the_folder_of_the_first_is_refused() {

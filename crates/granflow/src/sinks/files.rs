@@ -125,7 +125,9 @@ impl Files {
         let refused = |problem: String| BeginError::Resume { directory: directory.to_owned(), problem };
         let saved = checkpoints::file_in(directory);
         if !saved.exists() {
-            return Err(refused(format!("there is no checkpoint {}", saved.display())));
+            let error = refused(format!("there is no checkpoint {}", saved.display()));
+            folder.abandon();
+            return Err(error);
         }
         run.stepper_mut().release_buffers();
         let taken = checkpoints::read(&saved, &origin, run)?;

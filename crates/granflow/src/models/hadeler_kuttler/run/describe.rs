@@ -31,7 +31,10 @@ pub(crate) fn lines(run: &RunPlan, plan: &Plan) -> Vec<Line> {
 
 /// Bytes of the two layers in a cell, and of what the equilibrium takes beside them while it is found.
 const STATE: usize = 16;
-const EQUILIBRIUM: usize = 160;
+const EQUILIBRIUM: usize = 100;
+/// What pictures of a table take at once \[bytes\], and numbers that figures of a line hold for each cell and frame: measured.
+const PICTURES: f64 = 20e6;
+const PROFILES: f64 = 5.0;
 
 fn on<const D: usize>(run: &RunPlan, Pile { table: plan, sources }: &Pile<D>, axes: &[&Axis]) -> Vec<Line> {
     let cell: f64 = axes.iter().map(|axis| axis.width()).product();
@@ -71,8 +74,18 @@ fn size<const D: usize>(run: &RunPlan, nodes: usize, sources: usize) -> Size {
     let before = if instants && run.scheme != SchemeName::FirstOrder.as_str() { STATE } else { 0 };
     let direct = run.ends.until == Some(Until::Equilibrium);
     let beside = BESIDE + if direct { EQUILIBRIUM } else { before };
+    let drawn = if D == 1 { PROFILES } else { PICTURES };
     let bytes = (simulation + beside) as f64 + sources as f64 / nodes as f64;
-    Size { cells: nodes, line: D == 1, setup: bytes, run: bytes, maps: 3, frame: 2 * nodes }
+    Size {
+        cells: nodes,
+        line: D == 1,
+        setup: bytes,
+        run: bytes,
+        saved: STATE as f64,
+        maps: 3,
+        frame: 2 * nodes,
+        drawn,
+    }
 }
 
 /// How many edges of each kind there are, open and walls.

@@ -30,7 +30,7 @@ pub(crate) fn chute(run: &RunPlan, plan: OnChute) -> Result<Vec<Line>, StartErro
     let mut lines = case(run, material(&plan.material), &format!("{order}, film {:e}, ", plan.scheme.film));
     lines.push(threshold(run, ""));
     lines.extend(grid(&plan));
-    lines.extend(start(run, &mut *chute::start(run, plan)?, READ[0]));
+    lines.extend(start(run, &mut *chute::start(run, plan)?, READ[0], PICTURES[0]));
     Ok(lines)
 }
 
@@ -45,15 +45,20 @@ pub(crate) fn terrain(run: &RunPlan, plan: &OnTerrain) -> Result<Vec<Line>, Star
     lines.push(threshold(run, " m"));
     let (bed, release) = terrain::load(run, plan)?;
     lines.extend(mountain(&bed, plan.material.gravity));
-    lines.extend(start(run, &mut *terrain::simulate(run, plan, bed, release)?, READ[1]));
+    lines.extend(start(run, &mut *terrain::simulate(run, plan, bed, release)?, READ[1], PICTURES[1]));
     Ok(lines)
 }
 
 /// Bytes for each cell of what is read before a simulation is made: thickness and velocity of a chute, elevation of a mountain.
 const READ: [f64; 2] = [24.0, 8.0];
+/// What pictures of a plane and of a mountain take at once \[bytes\], and numbers that figures of a line hold for each cell and
+/// frame: measured.
+const PICTURES: [f64; 2] = [20e6, 45e6];
+const PROFILES: f64 = 10.0;
 
-/// How the state at the start would move; `beside` are the bytes for each cell that set it up.
-fn start(run: &RunPlan, start: &mut dyn Run, beside: f64) -> Vec<Line> {
+/// How the state at the start would move; `beside` are the bytes for each cell that set it up,
+/// `pictures` those of what is drawn.
+fn start(run: &RunPlan, start: &mut dyn Run, beside: f64, pictures: f64) -> Vec<Line> {
     let (totals, rate) = (start.totals(), start.stepper().rate());
     let cells: usize = start.stepper().cells().iter().product();
     let instants = matches!(run.output.frames, Frames::Every(_) | Frames::Ends);
@@ -61,14 +66,19 @@ fn start(run: &RunPlan, start: &mut dyn Run, beside: f64) -> Vec<Line> {
     let plane = start.plane();
     let line = plane.dimensions() == 1;
     let maps = plane.model().of_kind(Kind::Map).filter(|map| map.at == At::Cells).count();
+    // Components of the state and maps, all in double precision.
+    let saved = 8.0 * (start.stepper().components() + 4) as f64;
+    let drawn = if line { PROFILES } else { pictures };
     let frame = plane.series().iter().map(|field| field.length).sum();
     let size = Size {
         cells,
         line,
         setup: start.stepper().bytes_per_cell(false) as f64 + beside,
         run: bytes,
+        saved,
         maps,
         frame,
+        drawn,
     };
     let pull = start.stepper_mut().yield_ratios().into_iter().fold(0.0, f64::max);
     let verdict = if pull > 1.0 { "it will start" } else { "it rests" };
