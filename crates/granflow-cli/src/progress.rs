@@ -1,6 +1,8 @@
 //! Progress on standard error: a bar on a terminal, plain lines every few seconds elsewhere.
 
 use std::io::{self, IsTerminal};
+use std::sync::mpsc::{RecvTimeoutError, Sender, channel};
+use std::thread;
 use std::time::{Duration, Instant};
 
 use granflow::Words;
@@ -130,6 +132,29 @@ impl Progress {
         if self.how == Shown::Bar && self.shown.is_some() {
             tell(CLEAR);
         }
+    }
+}
+
+/// Says what takes long, once it has taken two seconds; dropped when it is done.
+#[derive(Debug)]
+pub struct LongWork {
+    /// The thread that waits hears when this is dropped.
+    _until: Option<Sender<()>>,
+}
+
+impl LongWork {
+    /// Begins to wait; `what` is said after the word "still", as in "reading the files".
+    pub fn new(quiet: bool, what: &'static str) -> Self {
+        const PATIENCE: Duration = Duration::from_secs(2);
+        let (done, waiting) = channel::<()>();
+        let wait = move || {
+            if waiting.recv_timeout(PATIENCE) == Err(RecvTimeoutError::Timeout) {
+                tell(&format!("still {what}\n"));
+            }
+        };
+        // Without a thread nothing is said, and nothing else is lost.
+        let begun = !quiet && thread::Builder::new().spawn(wait).is_ok();
+        LongWork { _until: begun.then_some(done) }
     }
 }
 

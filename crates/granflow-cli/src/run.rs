@@ -13,7 +13,7 @@ use granflow::sinks::BeginError;
 
 use crate::failure::{Failure, print, tell};
 use crate::interrupt;
-use crate::progress::Progress;
+use crate::progress::{LongWork, Progress};
 
 /// What the command line says about a run.
 #[derive(Debug, Clone, Default)]
@@ -69,9 +69,13 @@ pub fn compute(case: Checked, options: &RunOptions) -> Result<Finished, Failure>
     judged(attempt(case, options, interrupt::listen()?)?)
 }
 
+/// What takes long before the first step.
+pub const SET_UP: &str = "reading the files of the case and setting it up";
+
 fn attempt(case: Checked, options: &RunOptions, stop: &AtomicBool) -> Result<Finished, RunError> {
-    let mut progress = Progress::new(options.quiet, case.plan().ends.time);
-    let notice: fn(&str) = if options.quiet { |_| () } else { |text| tell(&format!("note: {text}\n")) };
+    let quiet = options.quiet;
+    let mut progress = Progress::new(quiet, case.plan().ends.time);
+    let notice: fn(&str) = if quiet { |_| () } else { |text| tell(&format!("note: {text}\n")) };
     let options = Options {
         directory: options.directory(case.plan().source_name()),
         threads: options.threads.map_or(0, NonZeroUsize::get),
@@ -79,7 +83,11 @@ fn attempt(case: Checked, options: &RunOptions, stop: &AtomicBool) -> Result<Fin
         command: command(),
         notice,
     };
-    let finished = case.compute(&options, stop, &mut |run: &dyn Run| progress.show(run));
+    let mut setup = Some(LongWork::new(quiet, SET_UP));
+    let finished = case.compute(&options, stop, &mut |run: &dyn Run| {
+        setup.take();
+        progress.show(run);
+    });
     progress.finish();
     finished
 }

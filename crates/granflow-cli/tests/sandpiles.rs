@@ -259,3 +259,29 @@ fn an_interrupted_pile_goes_on_as_if_it_had_not_been() {
         assert_eq!(figures(&resumed), figures(&unbroken), "{name}");
     }
 }
+
+/// What decides that a pile is steady, and since when its sources flow, is in the checkpoint: a pile that is taken up at its end
+/// takes no step more and says the same of itself.
+#[test]
+fn a_pile_taken_up_at_its_end_is_at_its_end() {
+    let folder = tempfile::tempdir().unwrap();
+    let file = folder.path().join("pile.toml");
+    let text = r#"
+        model = "hadeler_kuttler"
+        grid.x = { from = 0.0, to = 1.0, cells = 10 }
+        source = [{ rate = 0.5 }, { rate = 0.25, from = 0.5, to = 1.25 }]
+        output.files = ["netcdf"]
+        "#;
+    for time in ["time = { until = \"steady\", end = 100 }", "time = { end = 1.0 }", "time = { end = 0.5 }"] {
+        std::fs::write(&file, format!("{time}\n{text}")).unwrap();
+        let (case, out) = (Case::read(&file).unwrap(), folder.path().join("out"));
+        let figures =
+            |summary: Summary| (summary.stop_reason, summary.steps, summary.time.to_bits(), summary.extra);
+        let first = figures(compute(&case, &out, false, None).summary);
+        let frames = std::fs::read(out.join("checkpoint/frames.bin")).unwrap();
+        for _ in 0..2 {
+            assert_eq!(figures(compute(&case, &out, true, None).summary), first, "{time}");
+            assert!(std::fs::read(out.join("checkpoint/frames.bin")).unwrap() == frames, "{time}");
+        }
+    }
+}
