@@ -1,8 +1,8 @@
 //! The checkpoint: everything a run needs to go on bit for bit.
 //!
 //! Layout, all little endian: the line `granflow checkpoint 3`, a u32 length, that many bytes of JSON (version,
-//! case, inputs, step, end, names and lengths), then as raw f64 the time, the scalars and the arrays in that order, then
-//! how far frames and ledger had come (u64 records, u32 CRC-32 of them, twice), then the CRC-32 of all before.
+//! case, inputs, step, end, names and lengths), then as raw f64 the time and the scalars, then the arrays as raw
+//! f64 or f32, then how far frames and ledger had come (u64 records, u32 CRC-32 of them, twice), then the CRC-32 of all before.
 
 use super::inputs::{Input, difference};
 use super::mark::Mark;
@@ -54,7 +54,7 @@ pub struct Marks {
     pub ledger: Mark,
 }
 
-/// The numbers of an array. The file has them all in double precision, and so they are read.
+/// The numbers of an array, which the file has in the same precision.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Numbers<'a> {
     /// In double precision.
@@ -70,6 +70,16 @@ impl Numbers<'_> {
             Numbers::Single(values) => values.len(),
         }
     }
+    /// How many bytes they have in the file.
+    pub(crate) fn bytes(&self) -> usize {
+        self.len() * self.precision().width()
+    }
+    fn precision(&self) -> Precision {
+        match self {
+            Numbers::Double(_) => Precision::F64,
+            Numbers::Single(_) => Precision::F32,
+        }
+    }
     /// The same, not more than so many at once.
     pub(crate) fn chunks(&self, most: usize) -> Vec<Numbers<'_>> {
         match self {
@@ -81,9 +91,7 @@ impl Numbers<'_> {
     pub(crate) fn encode(&self, bytes: &mut Vec<u8>) {
         match self {
             Numbers::Double(values) => Precision::F64.encode(values, bytes),
-            Numbers::Single(values) => {
-                values.iter().for_each(|&value| Precision::F64.encode(&[value.into()], bytes));
-            }
+            Numbers::Single(values) => values.iter().for_each(|value| bytes.extend(value.to_le_bytes())),
         }
     }
 }
@@ -96,7 +104,7 @@ struct Header {
     ended: Option<StopReason>,
     step: u64,
     scalars: Vec<String>,
-    arrays: Vec<(String, usize)>,
+    arrays: Vec<(String, usize, Precision)>,
 }
 
 /// A short name for the text of a case: its length and CRC-32, to tell an edited case from the one that was run.
@@ -130,7 +138,11 @@ impl Checkpoint<'_> {
             ended: self.ended,
             step: self.step,
             scalars: self.scalars.iter().map(|(name, _)| name.clone()).collect(),
-            arrays: self.arrays.iter().map(|(name, values)| (name.clone(), values.len())).collect(),
+            arrays: self
+                .arrays
+                .iter()
+                .map(|(name, values)| (name.clone(), values.len(), values.precision()))
+                .collect(),
         };
         let header = serde_json::to_vec(&header).expect("names and counts are JSON");
         let mut bytes = MAGIC.to_vec();
@@ -188,8 +200,12 @@ impl Checkpoint<'static> {
         let mut front = file.numbers(1 + header.scalars.len()).map_err(unread())?;
         let time = front.remove(0);
         let mut arrays = Vec::new();
-        for (name, length) in &header.arrays {
-            arrays.push((name.clone(), Numbers::Double(file.numbers(*length).map_err(unread())?.into())));
+        for (name, length, precision) in &header.arrays {
+            let numbers = match precision {
+                Precision::F64 => file.numbers(*length).map(|values| Numbers::Double(values.into())),
+                Precision::F32 => file.singles(*length).map(|values| Numbers::Single(values.into())),
+            };
+            arrays.push((name.clone(), numbers.map_err(unread())?));
         }
         let mut mark = || -> io::Result<Mark> {
             let mut bytes = [0; Mark::BYTES];
@@ -253,10 +269,13 @@ impl Header {
         let mut header = vec![0; (front - before) as usize];
         file.read_exact(&mut header).map_err(unread())?;
         let header: Header = serde_json::from_slice(&header).map_err(|_| altered(path))?;
-        let lengths = header.arrays.iter().map(|(_, length)| *length as u64);
-        let numbers = lengths.fold(1 + header.scalars.len() as u64, u64::saturating_add); // a damaged length may be huge
-        let wanted =
-            numbers.saturating_mul(8).saturating_add(2 * Mark::BYTES as u64 + 4).saturating_add(front);
+        // A damaged length may be huge.
+        let sizes = header
+            .arrays
+            .iter()
+            .map(|(_, length, precision)| (*length as u64).saturating_mul(precision.width() as u64));
+        let numbers = sizes.fold(8 * (1 + header.scalars.len() as u64), u64::saturating_add);
+        let wanted = numbers.saturating_add(2 * Mark::BYTES as u64 + 4).saturating_add(front);
         if size != wanted {
             return Err(if size < wanted { short(wanted) } else { altered(path) });
         }
@@ -314,12 +333,25 @@ impl<R: Read> Read for Hashed<R> {
 impl<R: Read> Hashed<R> {
     /// The next numbers, of which no second copy is made.
     fn numbers(&mut self, count: usize) -> io::Result<Vec<f64>> {
+        self.next(count, f64::from_le_bytes)
+    }
+
+    /// As [`Hashed::numbers`], in single precision.
+    fn singles(&mut self, count: usize) -> io::Result<Vec<f32>> {
+        self.next(count, f32::from_le_bytes)
+    }
+
+    fn next<T, const WIDTH: usize>(
+        &mut self,
+        count: usize,
+        number: fn([u8; WIDTH]) -> T,
+    ) -> io::Result<Vec<T>> {
         let mut numbers = Vec::with_capacity(count);
-        let mut bytes = vec![0; 8 * AT_ONCE.min(count)];
+        let mut bytes = vec![0; WIDTH * AT_ONCE.min(count)];
         while numbers.len() < count {
-            let part = &mut bytes[..8 * AT_ONCE.min(count - numbers.len())];
+            let part = &mut bytes[..WIDTH * AT_ONCE.min(count - numbers.len())];
             self.read_exact(part)?;
-            numbers.extend(part.as_chunks().0.iter().map(|&bytes| f64::from_le_bytes(bytes)));
+            numbers.extend(part.as_chunks().0.iter().map(|&bytes| number(bytes)));
         }
         Ok(numbers)
     }

@@ -88,9 +88,9 @@ impl Writer {
     pub fn checkpoint(&mut self, checkpoint: &Checkpoint) -> Result<(), Error> {
         let arrays = checkpoint.arrays.iter().map(|(_, values)| values);
         let parts: Vec<Numbers> = arrays.clone().flat_map(|values| values.chunks(NUMBERS)).collect();
-        let numbers: usize = arrays.map(Numbers::len).sum();
+        let bytes = arrays.map(Numbers::bytes).sum();
         let head = checkpoint.head();
-        self.send(Order::Checkpoint { head, bytes: numbers * Precision::F64.width() })?;
+        self.send(Order::Checkpoint { head, bytes })?;
         self.pieces(&parts, Numbers::encode)
     }
 

@@ -66,8 +66,8 @@ fn start(run: &RunPlan, start: &mut dyn Run, beside: f64, pictures: f64) -> Vec<
     let plane = start.plane();
     let line = plane.dimensions() == 1;
     let maps = plane.model().of_kind(Kind::Map).filter(|map| map.at == At::Cells).count();
-    // Components of the state and maps, all in double precision.
-    let saved = 8.0 * (start.stepper().components() + 4) as f64;
+    // Components of the state, and four maps in single precision.
+    let saved = 8.0 * start.stepper().components() as f64 + 16.0;
     let drawn = if line { PROFILES } else { pictures };
     let frame = plane.series().iter().map(|field| field.length).sum();
     let size = Size {
