@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use super::checked::Checked;
 use super::fault::CaseError;
-use super::files::{FileAccess, read_case};
+use super::files::{Asked, FileAccess, read_case};
 use super::kinds::{self, Words};
 use super::look::Look;
 use super::source::Source;
@@ -57,7 +57,9 @@ impl Case {
     /// # Errors
     /// [`CaseError`] for the first thing that is wrong; its kind is `File` where a file cannot be read.
     pub fn check(&self, files: &dyn FileAccess) -> Result<Checked, CaseError> {
-        let (run, kind) = self.words.check(&Look { source: &self.source, files })?;
+        let files = Asked::new(files);
+        let (mut run, kind) = self.words.check(&Look { source: &self.source, files: &files })?;
+        run.inputs = files.into_names();
         Ok(Checked { run, kind })
     }
 

@@ -1,8 +1,9 @@
 //! The files that a case names, and what reads them.
 
+use std::cell::RefCell;
 use std::fmt::Debug;
 use std::io;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use super::fault::CaseError;
 use super::file_kind::FileKind;
@@ -81,6 +82,55 @@ impl FileAccess for NoFiles {
 
     fn names(&self, _folder: &Path) -> Option<Vec<String>> {
         Some(Vec::new())
+    }
+}
+
+/// Files that keep the names of those that were asked for.
+pub(crate) struct Asked<'a> {
+    files: &'a dyn FileAccess,
+    names: RefCell<Vec<PathBuf>>,
+}
+
+impl<'a> Asked<'a> {
+    pub fn new(files: &'a dyn FileAccess) -> Self {
+        Self { files, names: RefCell::default() }
+    }
+
+    fn note(&self, path: &Path) {
+        self.names.borrow_mut().push(path.to_owned());
+    }
+
+    /// The names, each once.
+    pub fn into_names(self) -> Vec<PathBuf> {
+        let mut names = self.names.into_inner();
+        names.sort();
+        names.dedup();
+        names
+    }
+}
+
+impl FileAccess for Asked<'_> {
+    fn outlines(&self, path: &Path) -> Result<Box<dyn Outline>, String> {
+        self.note(path);
+        self.files.outlines(path)
+    }
+
+    fn kinds(&self) -> &'static [FileKind] {
+        self.files.kinds()
+    }
+
+    fn find(&self, path: &Path) -> io::Result<()> {
+        self.note(path);
+        self.files.find(path)
+    }
+
+    fn bytes(&self, path: &Path) -> io::Result<Vec<u8>> {
+        self.note(path);
+        self.files.bytes(path)
+    }
+
+    fn names(&self, folder: &Path) -> Option<Vec<String>> {
+        self.files.names(folder)
     }
 }
 

@@ -5,6 +5,7 @@ use serde::{Deserialize, Serialize};
 
 use super::fault::CaseError;
 use super::look::Look;
+use super::memory;
 
 /// More cells than any machine holds.
 const MAX_CELLS: u64 = 1 << 36;
@@ -40,6 +41,18 @@ impl Grid {
         if cells[0].checked_mul(cells[1]).is_none_or(|count| count as u64 > MAX_CELLS) {
             let message = format!("{} x {} cells are more than any machine holds", cells[0], cells[1]);
             return Err(look.source.fault("grid.x.cells", message));
+        }
+        // The state at the start alone.
+        let needed = 24.0 * cells[0] as f64 * cells[1] as f64;
+        if let Some(free) = memory::available().filter(|free| needed > *free as f64) {
+            let [needed, free] = [needed, free as f64].map(memory::in_words);
+            let message =
+                format!("{} x {} cells need more than {needed}, {free} are free", cells[0], cells[1]);
+            return Err(look.fault(
+                "grid.x.cells",
+                message,
+                "take fewer cells, or a machine with more memory",
+            ));
         }
         Ok(())
     }

@@ -39,6 +39,7 @@ mod formula;
 mod grid;
 mod kinds;
 mod look;
+pub mod memory;
 mod nearest;
 mod npy;
 mod output;

@@ -65,12 +65,27 @@ impl Output {
             (None, None, None, Some(steps)) => Frames::Steps(steps.div_ceil(u64::from(FRAMES)).max(1)),
             (None, None, None, None) => Frames::Ends,
         };
+        self.bounded(look, frames, ends)?;
         Ok(OutputPlan {
             frames,
             files: self.kinds(look, defaults.files)?,
             precision: self.precision.unwrap_or(defaults.precision),
             threshold: self.threshold.unwrap_or(defaults.threshold),
         })
+    }
+
+    /// What is written must have an end that a disk can hold.
+    fn bounded(&self, look: &Look, frames: Frames, ends: &Ends) -> Result<(), CaseError> {
+        let (Some(count), most) = (frames.count(ends), Frames::MOST) else { return Ok(()) };
+        if count <= most {
+            return Ok(());
+        }
+        let (key, cure) = match (frames, ends.time, ends.steps) {
+            (Frames::Every(_), Some(end), _) => ("output.every", format!("every = {}", end / 1000.0)),
+            (_, _, steps) => ("output.steps", format!("steps = {}", (steps.unwrap_or(0) / 1000).max(1))),
+        };
+        let message = format!("up to {count} frames would be written, more than {most}");
+        Err(look.fault(key, message, &format!("write {cure} for a thousand of them")))
     }
 
     /// The kinds of files that are asked for; where the case does not say, those of `files` that can be written.

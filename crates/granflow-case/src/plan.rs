@@ -26,6 +26,8 @@ pub struct RunPlan {
     pub output: OutputPlan,
     /// What is allowed but may surprise, one sentence each.
     pub notes: Vec<String>,
+    /// The files that the case names, seen from the working folder.
+    pub inputs: Vec<PathBuf>,
     /// Where the case was read from.
     pub(crate) source: Source,
 }
@@ -54,6 +56,12 @@ impl RunPlan {
     #[must_use]
     pub fn locate(&self, path: &Path) -> PathBuf {
         self.source.folder().join(path)
+    }
+
+    /// A path as the case writes it: without the folder of the case file.
+    #[must_use]
+    pub fn as_written(&self, path: &Path) -> PathBuf {
+        path.strip_prefix(self.source.folder()).unwrap_or(path).to_owned()
     }
 
     /// An error at a key of the case, for what shows only later (a raster without a CRS, a missing attribute).
@@ -135,4 +143,21 @@ pub enum Frames {
     Steps(u64),
     /// At the start and at the end only, since the end is not known beforehand.
     Ends,
+}
+
+impl Frames {
+    /// More frames than this are refused.
+    pub const MOST: u64 = 100_000;
+
+    /// How many frames a run with these ends has at most, first and last among them; `None` where its end is not known.
+    #[must_use]
+    pub fn count(&self, ends: &Ends) -> Option<u64> {
+        let between = match *self {
+            _ if ends.until == Some(Until::Equilibrium) => 0.0,
+            Frames::Every(every) => (ends.time? / every).ceil(),
+            Frames::Steps(every) => (ends.steps? as f64 / every as f64).ceil(),
+            Frames::Ends => return None,
+        };
+        Some((between as u64).saturating_add(1)) // a float beyond u64 becomes its largest number
+    }
 }

@@ -4,6 +4,7 @@ use std::fs;
 use std::path::Path;
 
 use granflow::Case;
+use granflow::session::RunError;
 
 use crate::failure::{Failure, print};
 use crate::run::{RunOptions, compute};
@@ -22,7 +23,7 @@ pub fn demo(out: &Path) -> Result<(), Failure> {
     }
     let case = Case::read(&file)?.check()?;
     let finished = compute(case, &RunOptions { out: Some(out.to_owned()), ..RunOptions::default() })?;
-    let summary = &finished.summary;
+    let summary = finished.close().map_err(RunError::from)?;
     let number = |value: Option<f64>| value.map_or_else(|| "-".to_owned(), |value| format!("{value:.1}"));
     let place = |name: &str| out.join(name).display().to_string();
     print(&format!(

@@ -66,8 +66,7 @@ impl Failure {
             Self::Computation(message) | Self::File(message) => format!("error: {message}\n"),
             Self::Interrupted(message) => format!("interrupted: {message}\n"),
         };
-        // nobody is left to be told if standard error is closed
-        let _ = io::stderr().write_all(text.as_bytes());
+        tell(&text);
         status
     }
 }
@@ -83,6 +82,9 @@ impl From<StartError> for Failure {
         match error {
             StartError::Case(error) => error.into(),
             StartError::Raster(_) | StartError::Release(_) => Self::File(error.to_string()),
+            StartError::Memory { .. } => {
+                Self::usage(error.to_string(), "granflow check says what a case needs")
+            }
             StartError::Build(_) => Self::Computation(error.to_string()),
             StartError::Feature { .. } => {
                 Self::usage(error.to_string(), "cargo build with default features has all")
@@ -119,4 +121,10 @@ pub fn print(text: &str) -> Result<(), Failure> {
         }
         _ => Ok(()),
     }
+}
+
+/// Writes on standard error at once; nobody is left to be told if it is closed.
+pub fn tell(text: &str) {
+    let mut out = io::stderr().lock();
+    let _ = out.write_all(text.as_bytes()).and_then(|()| out.flush());
 }

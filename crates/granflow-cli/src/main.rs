@@ -46,7 +46,7 @@ struct Arguments {
 enum Command {
     /// Computes a case and writes its results
     #[command(
-        after_help = "Ctrl-C ends at the next step with everything valid and a checkpoint; a second one ends at once."
+        after_help = "Ctrl-C, SIGTERM and SIGHUP end at the next step with everything valid and a checkpoint; a second one ends at once. A run locks its folder; what an earlier run left there is moved into previous/."
     )]
     Run {
         /// The case file
@@ -61,7 +61,7 @@ enum Command {
         /// Number of threads (default: all cores)
         #[arg(long, value_name = "N")]
         threads: Option<std::num::NonZeroUsize>,
-        /// Goes on from the checkpoint of an interrupted run
+        /// Goes on from the last checkpoint of a run that was interrupted or killed
         #[arg(long)]
         resume: bool,
         /// No progress

@@ -1,15 +1,15 @@
 //! Progress on standard error: a bar on a terminal, plain lines every few seconds elsewhere.
 
-use std::io::{self, IsTerminal, Write};
-use std::sync::mpsc;
-use std::thread::JoinHandle;
+use std::io::{self, IsTerminal};
+use std::sync::mpsc::{RecvTimeoutError, Sender, channel};
+use std::thread;
 use std::time::{Duration, Instant};
 
 use granflow::Words;
 use granflow::run::Run;
 
-/// Before the first line about setting up.
-const SILENT: Duration = Duration::from_secs(2);
+use crate::failure::tell;
+
 /// Between two plain lines.
 const PLAIN: Duration = Duration::from_secs(5);
 /// Between two looks at the clock that redraw the bar.
@@ -78,41 +78,6 @@ enum Shown {
     Nowhere,
 }
 
-/// Says every few seconds that a case is being set up, until it is dropped.
-pub struct Waiting {
-    ended: Option<mpsc::Sender<()>>,
-    teller: Option<JoinHandle<()>>,
-}
-
-impl Waiting {
-    /// Tells nothing if `quiet`, nor in the first two seconds.
-    pub fn begin(quiet: bool) -> Self {
-        if quiet {
-            return Self { ended: None, teller: None };
-        }
-        let (ended, end) = mpsc::channel();
-        let tell = move || {
-            let start = Instant::now();
-            let mut pause = SILENT;
-            while end.recv_timeout(pause) == Err(mpsc::RecvTimeoutError::Timeout) {
-                eprintln!("reading terrain and releases, {}", duration(start.elapsed()));
-                pause = PLAIN;
-            }
-        };
-        Self { ended: Some(ended), teller: Some(std::thread::spawn(tell)) }
-    }
-}
-
-impl Drop for Waiting {
-    fn drop(&mut self) {
-        self.ended.take();
-        if let Some(teller) = self.teller.take() {
-            // It only writes: nothing is lost if it could not.
-            teller.join().ok();
-        }
-    }
-}
-
 /// Shows a run's status while it works.
 #[derive(Debug)]
 pub struct Progress {
@@ -170,6 +135,29 @@ impl Progress {
     }
 }
 
+/// Says what takes long, once it has taken two seconds; dropped when it is done.
+#[derive(Debug)]
+pub struct LongWork {
+    /// The thread that waits hears when this is dropped.
+    _until: Option<Sender<()>>,
+}
+
+impl LongWork {
+    /// Begins to wait; `what` is said after the word "still", as in "reading the files".
+    pub fn new(quiet: bool, what: &'static str) -> Self {
+        const PATIENCE: Duration = Duration::from_secs(2);
+        let (done, waiting) = channel::<()>();
+        let wait = move || {
+            if waiting.recv_timeout(PATIENCE) == Err(RecvTimeoutError::Timeout) {
+                tell(&format!("still {what}\n"));
+            }
+        };
+        // Without a thread nothing is said, and nothing else is lost.
+        let begun = !quiet && thread::Builder::new().spawn(wait).is_ok();
+        LongWork { _until: begun.then_some(done) }
+    }
+}
+
 /// Begins the line of a terminal again, empty.
 const CLEAR: &str = "\r\x1b[2K";
 
@@ -178,12 +166,6 @@ fn bar(share: f64, line: &str) -> String {
     let full = (share * WIDTH as f64) as usize;
     let [full, empty] = ["█".repeat(full), "░".repeat(WIDTH - full)];
     format!("{CLEAR}\x1b[?7l{full}{empty} {:>3.0} % {line}\x1b[?7h", 100.0 * share)
-}
-
-/// Writes on standard error at once; nobody is left to be told if it is closed.
-fn tell(text: &str) {
-    let mut out = io::stderr().lock();
-    let _ = out.write_all(text.as_bytes()).and_then(|()| out.flush());
 }
 
 #[cfg(test)]

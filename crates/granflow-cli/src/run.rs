@@ -2,16 +2,18 @@
 
 use std::num::NonZeroUsize;
 use std::path::{Path, PathBuf};
+use std::sync::atomic::AtomicBool;
 
 use granflow::Checked;
 use granflow::output::summary::StopReason;
 use granflow::results::Finished;
 use granflow::run::Run;
-use granflow::session::Options;
+use granflow::session::{Options, RunError};
+use granflow::sinks::BeginError;
 
-use crate::failure::{Failure, print};
+use crate::failure::{Failure, print, tell};
 use crate::interrupt;
-use crate::progress::{Progress, Waiting};
+use crate::progress::{LongWork, Progress};
 
 /// What the command line says about a run.
 #[derive(Debug, Clone, Default)]
@@ -34,10 +36,18 @@ impl RunOptions {
     }
 }
 
-/// Computes a case, writes its results and says in one line how it ended.
+/// Computes a case, writes its results and says in one line how it ended. A run that had ended before is left as it is.
 pub fn run(case: Checked, options: &RunOptions) -> Result<(), Failure> {
-    let finished = compute(case, options)?;
-    if options.quiet { Ok(()) } else { print(&format!("{}\n", line(&finished))) }
+    let text = match attempt(case, options, interrupt::listen()?) {
+        Err(RunError::Begin(ended @ BeginError::Ended { .. })) => format!("{ended}\n"),
+        done => {
+            let finished = judged(done?)?;
+            let line = line(&finished);
+            finished.close().map_err(RunError::from)?;
+            format!("{line}\n")
+        }
+    };
+    if options.quiet { Ok(()) } else { print(&text) }
 }
 
 /// How a run ended, in one line.
@@ -56,28 +66,44 @@ fn line(finished: &Finished) -> String {
 
 /// Computes a case and writes its results, also those of a run that was interrupted.
 pub fn compute(case: Checked, options: &RunOptions) -> Result<Finished, Failure> {
-    let stop = interrupt::listen()?;
-    let mut progress = Progress::new(options.quiet, case.plan().ends.time);
+    judged(attempt(case, options, interrupt::listen()?)?)
+}
+
+/// What takes long before the first step.
+pub const SET_UP: &str = "reading the files of the case and setting it up";
+
+fn attempt(case: Checked, options: &RunOptions, stop: &AtomicBool) -> Result<Finished, RunError> {
     let quiet = options.quiet;
+    let mut progress = Progress::new(quiet, case.plan().ends.time);
+    let notice: fn(&str) = if quiet { |_| () } else { |text| tell(&format!("note: {text}\n")) };
     let options = Options {
         directory: options.directory(case.plan().source_name()),
         threads: options.threads.map_or(0, NonZeroUsize::get),
         resume: options.resume,
-        command: std::env::args().collect::<Vec<_>>().join(" "),
+        command: command(),
+        notice,
     };
-    let mut waiting = Some(Waiting::begin(quiet));
+    let mut setup = Some(LongWork::new(quiet, SET_UP));
     let finished = case.compute(&options, stop, &mut |run: &dyn Run| {
-        if waiting.take().is_some() {
-            run.plane().domain.remarks().iter().for_each(|remark| eprintln!("{remark}"));
+        if setup.take().is_some() {
+            run.plane().domain.remarks().iter().for_each(|remark| tell(&format!("{remark}\n")));
         }
         progress.show(run);
     });
-    drop(waiting);
     progress.finish();
-    let finished = finished?;
+    finished
+}
+
+/// The command, in which what is no text is marked as such.
+fn command() -> String {
+    std::env::args_os().map(|word| word.to_string_lossy().into_owned()).collect::<Vec<_>>().join(" ")
+}
+
+/// A run that was interrupted is a failure, and much in films a warning.
+fn judged(finished: Finished) -> Result<Finished, Failure> {
     let summary = &finished.summary;
     for warning in &summary.warnings {
-        eprintln!("warning: {warning}");
+        tell(&format!("warning: {warning}\n"));
     }
     if summary.stop_reason == StopReason::Interrupted {
         return Err(Failure::Interrupted(format!("{}; --resume goes on", line(&finished))));

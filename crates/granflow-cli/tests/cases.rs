@@ -207,6 +207,20 @@ const ON_A_GRID: &[Bad] = &[
         &["savage_hutter has no end \"steady\"", "until = \"rest\""],
         2,
     ),
+    (
+        "steps = 100",
+        "end = 1.0\n[output]\nevery = 1e-9",
+        18,
+        &["`output.every`", "1000000001 frames", "more than 100000", "every = 0.001"],
+        2,
+    ),
+    (
+        "steps = 100",
+        "steps = 1000000\n[output]\nsteps = 1",
+        18,
+        &["`output.steps`", "1000001 frames", "steps = 1000"],
+        2,
+    ),
     ("steps = 100", "steps = 100\n[output]\nevery = 1.0\nsteps = 10", 19, &["both `every` and `steps`"], 2),
     ("steps = 100", "steps = 100\n[output]\nfiles = [\"netcdf\", \"vkt\"]", 18, &["did you mean `vtk`?"], 2),
     // files

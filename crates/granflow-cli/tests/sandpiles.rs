@@ -1,11 +1,12 @@
 //! The sandpiles in `cases/`, computed by the program on coarse grids: what their comments promise comes out.
 
 use granflow::Case;
-use granflow::output::frames::Frames;
 use granflow::output::ledger::Ledger;
 use granflow::output::summary::{StopReason, Summary};
 use granflow::run::Run;
 use granflow::session::Options;
+use ndarray::Axis;
+use netcdf_reader::NcFile;
 use std::path::Path;
 use std::process::{Command, Output};
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -71,9 +72,10 @@ impl Done {
     }
     /// A layer in the frame `back` from the last.
     fn layer(&self, name: &str, back: usize) -> Vec<f64> {
-        let mut frames = Frames::open(&self.folder.path().join("out/checkpoint/frames.bin")).unwrap().0;
-        let (field, last) = (frames.position(name).unwrap(), frames.times().len() - 1);
-        frames.read(last - back, field).unwrap()
+        let file = NcFile::open(self.folder.path().join("out/result.nc")).unwrap();
+        let series = file.read_variable::<f64>(name).unwrap();
+        let frame = series.index_axis(Axis(0), series.shape()[0] - 1 - back);
+        frame.iter().copied().collect()
     }
     /// The steepest slope of the standing layer along the edges of cells.
     fn steepest(&self) -> f64 {
@@ -218,7 +220,8 @@ fn a_source_that_goes_round_leaves_a_hill_with_a_bowl() {
 
 /// Computes a case by the library into `directory`, interrupted after step `stop` if there is one.
 fn compute(case: &Case, directory: &Path, resume: bool, stop: Option<u64>) -> granflow::results::Finished {
-    let options = Options { directory: directory.into(), threads: 1, resume, command: "test".into() };
+    let options =
+        Options { directory: directory.into(), threads: 1, resume, command: "test".into(), notice: |_| () };
     let interrupt = AtomicBool::new(false);
     let mut report = |run: &dyn Run| {
         if Some(run.steps()) == stop {
@@ -254,5 +257,31 @@ fn an_interrupted_pile_goes_on_as_if_it_had_not_been() {
             figures
         };
         assert_eq!(figures(&resumed), figures(&unbroken), "{name}");
+    }
+}
+
+/// What decides that a pile is steady, and since when its sources flow, is in the checkpoint: a pile that is taken up at its end
+/// takes no step more and says the same of itself.
+#[test]
+fn a_pile_taken_up_at_its_end_is_at_its_end() {
+    let folder = tempfile::tempdir().unwrap();
+    let file = folder.path().join("pile.toml");
+    let text = r#"
+        model = "hadeler_kuttler"
+        grid.x = { from = 0.0, to = 1.0, cells = 10 }
+        source = [{ rate = 0.5 }, { rate = 0.25, from = 0.5, to = 1.25 }]
+        output.files = ["netcdf"]
+        "#;
+    for time in ["time = { until = \"steady\", end = 100 }", "time = { end = 1.0 }", "time = { end = 0.5 }"] {
+        std::fs::write(&file, format!("{time}\n{text}")).unwrap();
+        let (case, out) = (Case::read(&file).unwrap(), folder.path().join("out"));
+        let figures =
+            |summary: Summary| (summary.stop_reason, summary.steps, summary.time.to_bits(), summary.extra);
+        let first = figures(compute(&case, &out, false, None).summary);
+        let frames = std::fs::read(out.join("checkpoint/frames.bin")).unwrap();
+        for _ in 0..2 {
+            assert_eq!(figures(compute(&case, &out, true, None).summary), first, "{time}");
+            assert!(std::fs::read(out.join("checkpoint/frames.bin")).unwrap() == frames, "{time}");
+        }
     }
 }

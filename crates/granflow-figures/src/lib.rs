@@ -38,6 +38,7 @@ mod rows;
 mod scale_bar;
 mod section;
 mod surface;
+mod thin;
 mod ticks;
 mod typeface;
 mod view;

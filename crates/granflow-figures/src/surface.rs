@@ -11,6 +11,7 @@ use super::colours::{Colours, Rgb, mix, pick, shade};
 use super::depth::{Depth, Vertex};
 use super::heat::check_coordinates;
 use super::perspective::{Eye, dot, draw_box};
+use super::thin;
 use super::{Figure, FigureError, Picture};
 
 /// A surface over a rectangle.
@@ -252,9 +253,36 @@ impl Scene<'_> {
     }
 }
 
+impl Surface<'_> {
+    /// Draws the surface by fewer points where there are more than the picture can show.
+    fn draw_thinned(&self, kept: &[Vec<usize>; 2]) -> Result<Picture, FigureError> {
+        let [across, up] = kept;
+        let (nx, both) = (self.xs.len(), [across.as_slice(), up]);
+        // A cell is painted as the one at its lower corner was.
+        let cells = [&across[..across.len() - 1], &up[..up.len() - 1]];
+        let painted = self.paint.map(|paint| match self.paints_cells() {
+            true => thin::among(paint.values, nx - 1, cells),
+            false => thin::among(paint.values, nx, both),
+        });
+        let paint = |values| self.paint.map(|paint| Paint { values, ..paint });
+        Surface {
+            xs: &thin::along(self.xs, across),
+            ys: &thin::along(self.ys, up),
+            values: &thin::among(self.values, nx, both),
+            paint: painted.as_deref().and_then(paint),
+            ..*self
+        }
+        .draw()
+    }
+}
+
 impl Figure for Surface<'_> {
     fn draw(&self) -> Result<Picture, FigureError> {
         let heights = self.heights()?;
+        let kept = [self.xs, self.ys].map(|at| thin::kept(at.len()));
+        if kept[0].len() < self.xs.len() || kept[1].len() < self.ys.len() {
+            return self.draw_thinned(&kept);
+        }
         let ends = |at: &[f64]| [at[0], at[at.len() - 1]];
         let scales = [ends(self.xs), ends(self.ys), heights].map(Scale::new);
         let half = self.half();

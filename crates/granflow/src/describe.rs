@@ -1,5 +1,7 @@
 //! What a case would compute, in lines of a name and a value: what `granflow check` prints.
 
+use crate::memory::Size;
+use granflow_case::memory::{available, in_words};
 use granflow_case::{Axis, Frames, RunPlan, Stepping, Until};
 
 /// A line: a name, empty where it continues the line before, and a value.
@@ -48,9 +50,10 @@ fn ends(run: &RunPlan) -> String {
     ways.join(", or ")
 }
 
-/// Memory and steps, from the Courant number `rate` of a step of length 1 at the start.
-pub(crate) fn effort(run: &RunPlan, bytes: usize, rate: f64) -> Vec<Line> {
-    let mut lines = vec![("memory", memory(bytes)), ("steps", steps(run, rate))];
+/// Memory, frames and steps, from the Courant number `rate` of a step of length 1 at the start.
+pub(crate) fn effort(run: &RunPlan, size: &Size, rate: f64) -> Vec<Line> {
+    let mut lines =
+        vec![("memory", memory(run, size)), ("writes", written(run, size)), ("steps", steps(run, rate))];
     if let Stepping::Fixed(step) = run.stepping {
         let (courant, limit) = (step * rate, run.max_courant);
         let verdict = if courant <= limit { "in order" } else { "too large, the scheme is not stable there" };
@@ -59,16 +62,27 @@ pub(crate) fn effort(run: &RunPlan, bytes: usize, rate: f64) -> Vec<Line> {
     lines
 }
 
-fn memory(bytes: usize) -> String {
-    let bytes = bytes as f64;
-    let (value, unit) = if bytes < 1e6 {
-        (bytes / 1e3, "kB")
-    } else if bytes < 1e9 {
-        (bytes / 1e6, "MB")
-    } else {
-        (bytes / 1e9, "GB")
-    };
-    format!("about {value:.1} {unit} while computing")
+pub(crate) fn memory(run: &RunPlan, size: &Size) -> String {
+    let peak = size.peak(run);
+    let beyond = available().filter(|free| peak > *free as f64);
+    let verdict = beyond.map(|free| format!(", more than the {} that are free", in_words(free as f64)));
+    format!("about {} at its peak{}", in_words(peak), verdict.unwrap_or_default())
+}
+
+/// How many frames there will be, and what they take on disk.
+pub(crate) fn written(run: &RunPlan, size: &Size) -> String {
+    let bytes = size.frame_bytes(run);
+    match run.output.frames.count(&run.ends) {
+        Some(count) => {
+            let all = in_words(bytes * count as f64);
+            format!("at most {count} frames, {all} in result.nc, and once more while the run goes on")
+        }
+        None => format!(
+            "at most {} frames of {}: how many is not known before the run ends",
+            Frames::MOST,
+            in_words(bytes)
+        ),
+    }
 }
 
 /// Number of steps, exact for a fixed step, from the step at the start for an adaptive one.

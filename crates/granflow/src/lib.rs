@@ -75,6 +75,7 @@ pub mod describe;
 mod disk;
 mod entry;
 mod field;
+mod memory;
 pub mod model;
 pub mod models;
 #[cfg(feature = "files")]

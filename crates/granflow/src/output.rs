@@ -9,9 +9,12 @@ pub mod checkpoint;
 pub mod csv;
 #[cfg(feature = "figures")]
 pub mod figures;
+pub mod folder;
 pub mod frames;
 mod hdf5;
+pub mod inputs;
 pub mod ledger;
+pub mod mark;
 pub mod netcdf;
 #[cfg(feature = "geo")]
 pub mod outlines;
@@ -27,6 +30,8 @@ use std::path::{Path, PathBuf};
 
 /// How the temporary neighbours of final files begin and end; see [`remove_leftovers`].
 const TEMPORARY: (&str, &str) = (".granflow-", ".part");
+/// How those of GeoTIFFs begin, before six letters.
+const RASTER: &str = ".tmp";
 
 /// Why a file of a run could not be written or read; every message begins with the file.
 #[derive(Debug, thiserror::Error)]
@@ -56,6 +61,17 @@ pub enum Error {
         path: PathBuf,
         /// What was found, what was expected, and what helps.
         problem: String,
+    },
+    /// Another run writes into the folder.
+    #[error(
+        "{}: another run ({holder}) is writing into this folder; wait for it, or name another folder with --out",
+        path.display()
+    )]
+    Busy {
+        /// The folder.
+        path: PathBuf,
+        /// Who it is, as in "process 4711".
+        holder: String,
     },
     /// The data handed over cannot be written as this file.
     #[error("{}: cannot be written: {problem}", path.display())]
@@ -90,7 +106,7 @@ impl Error {
 /// The remedy for the common refusals of the system.
 fn cure(error: &io::Error) -> &'static str {
     match error.kind() {
-        io::ErrorKind::StorageFull | io::ErrorKind::QuotaExceeded => {
+        io::ErrorKind::StorageFull | io::ErrorKind::QuotaExceeded | io::ErrorKind::FileTooLarge => {
             "; what was complete before is still there: make room, then continue with --resume (from the last checkpoint; before the first, start again)"
         }
         io::ErrorKind::PermissionDenied | io::ErrorKind::ReadOnlyFilesystem => {
@@ -134,6 +150,20 @@ pub fn whole_file(path: &Path, fill: impl FnOnce(&mut dyn Write) -> io::Result<(
     write().map_err(Error::io(path, "write"))
 }
 
+/// Where a file of this name is written before [`settle`] gives it that name.
+#[cfg(feature = "geo")]
+pub(crate) fn temporary(folder: &Path, name: &str) -> PathBuf {
+    folder.join(format!("{}{name}{}", TEMPORARY.0, TEMPORARY.1))
+}
+
+/// Gives a complete file its name in the same folder, durably.
+#[cfg(feature = "geo")]
+pub(crate) fn settle(part: &Path, path: &Path) -> io::Result<()> {
+    File::options().write(true).open(part)?.sync_all()?;
+    fs::rename(part, path)?;
+    path.parent().map_or(Ok(()), sync_folder)
+}
+
 /// Makes a rename in `folder` last through a power cut (only Unix lets a folder be synced).
 fn sync_folder(folder: &Path) -> io::Result<()> {
     if cfg!(unix) { File::open(folder)?.sync_all() } else { Ok(()) }
@@ -151,9 +181,11 @@ impl<'a> Summed<'a> {
         Self { out, crc: crc32fast::Hasher::new(), bytes: 0 }
     }
 
-    /// Ends with the CRC-32 of all that passed.
-    fn finish(self) -> io::Result<()> {
-        self.out.write_all(&self.crc.finalize().to_le_bytes())
+    /// Ends with the CRC-32 of all that passed, and says it.
+    fn finish(self) -> io::Result<u32> {
+        let crc = self.crc.finalize();
+        self.out.write_all(&crc.to_le_bytes())?;
+        Ok(crc)
     }
 }
 
@@ -184,7 +216,9 @@ pub fn remove_leftovers(folder: &Path) -> Result<usize, Error> {
         let entry = entry.map_err(Error::io(folder, "list"))?;
         let name = entry.file_name();
         let name = name.to_string_lossy();
-        if name.starts_with(TEMPORARY.0) && name.ends_with(TEMPORARY.1) {
+        let letters = |rest: &str| rest.len() == 6 && rest.bytes().all(|byte| byte.is_ascii_alphanumeric());
+        let raster = name.strip_prefix(RASTER).is_some_and(letters);
+        if raster || (name.starts_with(TEMPORARY.0) && name.ends_with(TEMPORARY.1)) {
             fs::remove_file(entry.path()).map_err(Error::io(&entry.path(), "remove"))?;
             removed += 1;
         }
@@ -236,11 +270,11 @@ mod tests {
     #[test]
     fn only_our_leftovers_are_removed() {
         let folder = tempfile::tempdir().unwrap();
-        for name in [".granflow-x1.part", "granflow.part", ".granflow-notes"] {
+        for name in [".granflow-x1.part", "granflow.part", ".granflow-notes", ".tmpAb12Cd", ".tmp-notes"] {
             fs::write(folder.path().join(name), "").unwrap();
         }
-        assert_eq!(remove_leftovers(folder.path()).unwrap(), 1);
-        assert_eq!(names(folder.path()), [".granflow-notes", "granflow.part"]);
+        assert_eq!(remove_leftovers(folder.path()).unwrap(), 2);
+        assert_eq!(names(folder.path()), [".granflow-notes", ".tmp-notes", "granflow.part"]);
         assert_eq!(remove_leftovers(&folder.path().join("absent")).unwrap(), 0);
     }
 

@@ -16,6 +16,7 @@ pub use files::check_kinds;
 pub use story::Story;
 
 use crate::output;
+use crate::output::folder::Folder;
 use crate::output::frames::Frames;
 use crate::output::ledger::Entry;
 use crate::output::netcdf::{Values, history};
@@ -29,6 +30,8 @@ use std::time::SystemTime;
 pub struct Finished {
     /// Folder of the results.
     pub directory: PathBuf,
+    /// The lock of that folder, for as long as files are made of the run.
+    pub folder: Option<Folder>,
     /// Kinds of files that the case asks for.
     pub files: Vec<FileKind>,
     /// The case as it was computed, so that it can be run again.
@@ -76,6 +79,21 @@ impl Finished {
         let result = dataset(&self.plane, frames.precision(), times, series, &self.maps, about);
         let path = self.result();
         result.map_err(|problem| output::Error::invalid(&path, problem))?.write(&path, Some(&mut frames))
+    }
+
+    /// Remove the frames, of which `result.nc` has a second copy: nothing more is made of the run. One that was interrupted or
+    /// that failed keeps them, to go on from its checkpoint.
+    ///
+    /// # Errors
+    /// [`output::Error`] if the disk refuses.
+    pub fn close(self) -> Result<Summary, output::Error> {
+        use crate::stop_reason::StopReason;
+        if !matches!(self.summary.stop_reason, StopReason::Interrupted | StopReason::Failed) {
+            let path = self.frames.path().to_owned();
+            drop(self.frames);
+            output::remove_if_there(&path)?;
+        }
+        Ok(self.summary)
     }
 
     /// Path of `result.nc`.

@@ -69,6 +69,9 @@ pub trait Run: Send + Sync {
     fn step(&mut self, until: f64) -> Result<f64, Failure>;
     /// Nothing changes faster than `rate` and no source will change any more, or the state is an equilibrium.
     fn is_steady(&self, rate: f64) -> bool;
+    /// The largest change of each component of the state per time in the last step, also of one before [`Run::restore`]; infinite
+    /// where that is not known.
+    fn drift(&self) -> &[f64];
     /// The state is an equilibrium that was computed without steps.
     fn is_equilibrium(&self) -> bool {
         false
@@ -105,6 +108,9 @@ pub trait Run: Send + Sync {
     /// # Errors
     /// What does not fit, in words.
     fn restore(&mut self, saved: Saved<'static>) -> Result<(), String>;
+
+    /// Bytes that a cell takes while the run computes, with its maps; `instants` says whether sinks look into steps.
+    fn bytes_per_cell(&self, instants: bool) -> usize;
 
     /// Time reached.
     fn time(&self) -> f64 {

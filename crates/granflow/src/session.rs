@@ -1,10 +1,14 @@
 //! From a case to its files: what the program `granflow run` does, as a function.
 
 use crate::output;
+use crate::output::checkpoint::{Origin, case_hash};
+use crate::output::folder::Folder;
+use crate::output::inputs::inputs;
 use crate::results::{FilesError, Finished, check_kinds};
 use crate::run::{DriveError, Failure, Run, drive};
 use crate::sinks::{BeginError, Callback, Files, Sink, Stop};
 use crate::{Checked, StartError};
+use granflow_case::RunPlan;
 use std::path::PathBuf;
 use std::sync::atomic::AtomicBool;
 use std::time::Instant;
@@ -23,6 +27,8 @@ pub struct Options {
     pub resume: bool,
     /// The command, for the history of the result.
     pub command: String,
+    /// Hears, before the first step, what happened to an earlier run's files.
+    pub notice: fn(&str),
 }
 
 /// Why a run did not end as its case says.
@@ -81,16 +87,31 @@ impl Checked {
 
     fn into_files(
         self,
-        Options { directory, resume, command, .. }: &Options,
+        Options { directory, resume, command, notice, .. }: &Options,
         begun: Instant,
         stop: &AtomicBool,
         report: &mut (dyn FnMut(&dyn Run) + Send),
     ) -> Result<Finished, RunError> {
         let plan = self.plan().clone();
-        let mut run = self.start()?;
-        check_kinds(&plan.output.files, run.plane())?;
+        let folder = Folder::take(directory)?;
+        // Looked at before anything is read: what changes while it is being read is noticed by the next resume.
+        let started = origin(&plan).map_err(RunError::from).and_then(|origin| {
+            let run = self.start()?;
+            check_kinds(&plan.output.files, run.plane())?;
+            Ok((origin, run))
+        });
+        let (origin, mut run) = match started {
+            Ok(started) => started,
+            Err(error) => {
+                folder.abandon();
+                return Err(error);
+            }
+        };
         let begin = if *resume { Files::resume } else { Files::begin };
-        let mut files = begin(directory, &plan, command, &mut *run)?.since(begun);
+        if !resume && let Some(aside) = folder.clear()? {
+            notice(&format!("the files of an earlier run are now in {}", aside.display()));
+        }
+        let mut files = begin(folder, &plan, origin, command, &mut *run)?.since(begun);
         let mut report = Callback(report);
         let sinks: &mut [&mut dyn Sink] = &mut [&mut Stop(stop), &mut report, &mut files];
         match drive(&mut *run, &plan.ends, sinks) {
@@ -100,10 +121,19 @@ impl Checked {
                 Err(_) => unreachable!("the other sinks have no errors"),
             }),
             Err(DriveError::Step { failure, time }) => {
-                let left = files.give_up(run)?;
+                let left = files.give_up(run, &failure.to_string())?;
                 let time = left.frames.times().last().copied().unwrap_or(time);
                 Err(RunError::Computation { failure, time, saved: left.result() })
             }
         }
     }
+}
+
+/// What the run of a case is made of: its text, and what is in the files it names.
+///
+/// # Errors
+/// [`output::Error`] naming a file that cannot be read.
+pub fn origin(plan: &RunPlan) -> Result<Origin, output::Error> {
+    let inputs = inputs(&plan.inputs, |path| plan.as_written(path))?;
+    Ok(Origin { case: case_hash(&plan.text()), inputs })
 }

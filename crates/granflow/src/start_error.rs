@@ -1,6 +1,7 @@
 //! Why a checked case gave no run.
 
 use granflow_case::CaseError;
+use granflow_case::memory::in_words;
 
 /// Why a run could not be set up.
 #[derive(Debug, thiserror::Error)]
@@ -19,6 +20,19 @@ pub enum StartError {
     /// The numbers do not make a simulation.
     #[error(transparent)]
     Build(#[from] granflow_engine::simulation::BuildError),
+    /// It does not fit into the memory.
+    #[error(
+        "{cells} cells need about {}, {} are free; take fewer or larger cells, or a machine with more memory",
+        in_words(*needed), in_words(*available)
+    )]
+    Memory {
+        /// Cells of the run.
+        cells: usize,
+        /// Bytes that they need.
+        needed: f64,
+        /// Bytes that are free.
+        available: f64,
+    },
     /// The library was built without a feature that this case needs.
     #[error("this needs granflow's feature `{feature}`: build with `--features {feature}`")]
     Feature {

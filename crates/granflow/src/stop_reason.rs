@@ -23,6 +23,8 @@ pub enum StopReason {
     BelowSpeed,
     /// The user interrupted it; `--resume` goes on.
     Interrupted,
+    /// A step could not be taken; `failure` in `summary.json` says why.
+    Failed,
 }
 
 impl StopReason {
@@ -44,6 +46,7 @@ impl fmt::Display for StopReason {
             Self::KineticEnergy => "kinetic energy below its limit",
             Self::BelowSpeed => "speed below its limit",
             Self::Interrupted => "interrupted",
+            Self::Failed => "failed",
         })
     }
 }

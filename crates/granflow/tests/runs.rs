@@ -64,7 +64,15 @@ fn a_run_is_saved_and_taken_up_again_bit_for_bit() {
 fn what_does_not_fit_is_refused_in_words() {
     let (slide, mut pile) = (start(SLIDE), start(PILE));
     let refused = pile.restore(slide.save().into_owned()).unwrap_err();
-    assert!(refused.contains("another shape"), "{refused}");
+    assert!(refused.contains("40 x 24 cells"), "{refused}");
+    let mut turned = start(
+        &SLIDE
+            .replace("cells = 40", "cells = 0")
+            .replace("cells = 24", "cells = 40")
+            .replace("cells = 0", "cells = 24"),
+    );
+    let refused = turned.restore(slide.save().into_owned()).unwrap_err();
+    assert!(refused.contains("40 x 24 cells") && refused.contains("24 x 40"), "{refused}");
 }
 
 #[test]

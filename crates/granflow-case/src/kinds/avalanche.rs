@@ -52,6 +52,7 @@ pub(super) fn plan(
         notes: scheme.note().into_iter().chain(ends.note()).chain(slow_rest(material, &ends)).collect(),
         ends,
         output,
+        inputs: Vec::new(),
         source: look.source.clone(),
     }
 }

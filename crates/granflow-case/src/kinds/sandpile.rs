@@ -149,6 +149,7 @@ impl Written for Words {
             ends,
             output,
             notes,
+            inputs: Vec::new(),
             source: look.source.clone(),
         };
         let kind = Kind::Sandpile(Plan {

@@ -1,26 +1,40 @@
 //! The checkpoint: everything a run needs to go on bit for bit.
 //!
-//! Layout, all little endian: the line `granflow checkpoint 2`, a u32 length, that many bytes of JSON (version,
-//! case, step, names and lengths), then as raw f64 the time, the scalars and the arrays in that order, then the
-//! CRC-32 of all before.
+//! Layout, all little endian: the line `granflow checkpoint 3`, a u32 length, that many bytes of JSON (version,
+//! case, inputs, step, end, names and lengths), then as raw f64 the time and the scalars, then the arrays as raw
+//! f64 or f32, then how far frames and ledger had come (u64 records, u32 CRC-32 of them, twice), then the CRC-32 of all before.
 
+use super::inputs::{Input, difference};
+use super::mark::Mark;
 use super::{Error, Precision, Summed, whole_file};
+use crate::stop_reason::StopReason;
 use serde::{Deserialize, Serialize};
 use std::borrow::Cow;
 use std::fs::File;
 use std::io::{self, BufReader, Read, Write};
 use std::path::Path;
 
-const MAGIC: &[u8] = b"granflow checkpoint 2\n";
+const MAGIC: &[u8] = b"granflow checkpoint 3\n";
 const VERSION: &str = env!("CARGO_PKG_VERSION");
 /// Numbers that are turned from or into bytes in one go.
 const AT_ONCE: usize = 1 << 15;
 
+/// What a run was made of: it goes on with nothing else.
+#[derive(Debug, Clone, PartialEq, Eq, Default, Serialize, Deserialize)]
+pub struct Origin {
+    /// What identifies the case, such as [`case_hash`] of its resolved text.
+    pub case: String,
+    /// The files that the case names, as they were when the run began.
+    pub inputs: Vec<Input>,
+}
+
 /// The state of a run between two steps.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Checkpoint<'a> {
-    /// What identifies the case, such as [`case_hash`] of its resolved text.
-    pub case: String,
+    /// What the run was made of.
+    pub origin: Origin,
+    /// Why the run has ended, where it has.
+    pub ended: Option<StopReason>,
     /// Steps done.
     pub step: u64,
     /// Simulated time, in the case's units.
@@ -31,7 +45,16 @@ pub struct Checkpoint<'a> {
     pub arrays: Vec<(String, Numbers<'a>)>,
 }
 
-/// The numbers of an array. The file has them all in double precision, and so they are read.
+/// What a checkpoint counts on: how far the files beside it had come.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub struct Marks {
+    /// The store of frames.
+    pub frames: Mark,
+    /// The ledger.
+    pub ledger: Mark,
+}
+
+/// The numbers of an array, which the file has in the same precision.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Numbers<'a> {
     /// In double precision.
@@ -47,6 +70,16 @@ impl Numbers<'_> {
             Numbers::Single(values) => values.len(),
         }
     }
+    /// How many bytes they have in the file.
+    pub(crate) fn bytes(&self) -> usize {
+        self.len() * self.precision().width()
+    }
+    fn precision(&self) -> Precision {
+        match self {
+            Numbers::Double(_) => Precision::F64,
+            Numbers::Single(_) => Precision::F32,
+        }
+    }
     /// The same, not more than so many at once.
     pub(crate) fn chunks(&self, most: usize) -> Vec<Numbers<'_>> {
         match self {
@@ -58,9 +91,7 @@ impl Numbers<'_> {
     pub(crate) fn encode(&self, bytes: &mut Vec<u8>) {
         match self {
             Numbers::Double(values) => Precision::F64.encode(values, bytes),
-            Numbers::Single(values) => {
-                values.iter().for_each(|&value| Precision::F64.encode(&[value.into()], bytes));
-            }
+            Numbers::Single(values) => values.iter().for_each(|value| bytes.extend(value.to_le_bytes())),
         }
     }
 }
@@ -68,10 +99,12 @@ impl Numbers<'_> {
 #[derive(Serialize, Deserialize)]
 struct Header {
     granflow: String,
-    case: String,
+    #[serde(flatten)]
+    origin: Origin,
+    ended: Option<StopReason>,
     step: u64,
     scalars: Vec<String>,
-    arrays: Vec<(String, usize)>,
+    arrays: Vec<(String, usize, Precision)>,
 }
 
 /// A short name for the text of a case: its length and CRC-32, to tell an edited case from the one that was run.
@@ -85,8 +118,8 @@ impl Checkpoint<'_> {
     ///
     /// # Errors
     /// [`Error::Io`]; the older checkpoint then remains.
-    pub fn write(&self, path: &Path) -> Result<(), Error> {
-        write_from(path, &self.head(), |out| {
+    pub fn write(&self, path: &Path, marks: Marks) -> Result<(), Error> {
+        write_from(path, &self.head(), marks, |out| {
             let mut bytes = Vec::new();
             for part in self.arrays.iter().flat_map(|(_, values)| values.chunks(AT_ONCE)) {
                 bytes.clear();
@@ -101,10 +134,15 @@ impl Checkpoint<'_> {
     pub(crate) fn head(&self) -> Vec<u8> {
         let header = Header {
             granflow: VERSION.into(),
-            case: self.case.clone(),
+            origin: self.origin.clone(),
+            ended: self.ended,
             step: self.step,
             scalars: self.scalars.iter().map(|(name, _)| name.clone()).collect(),
-            arrays: self.arrays.iter().map(|(name, values)| (name.clone(), values.len())).collect(),
+            arrays: self
+                .arrays
+                .iter()
+                .map(|(name, values)| (name.clone(), values.len(), values.precision()))
+                .collect(),
         };
         let header = serde_json::to_vec(&header).expect("names and counts are JSON");
         let mut bytes = MAGIC.to_vec();
@@ -133,23 +171,26 @@ impl Checkpoint<'_> {
 pub(crate) fn write_from(
     path: &Path,
     head: &[u8],
+    marks: Marks,
     arrays: impl FnOnce(&mut dyn Write) -> io::Result<()>,
 ) -> Result<(), Error> {
     whole_file(path, |out| {
         let mut out = Summed::new(out);
         out.write_all(head)?;
         arrays(&mut out)?;
-        out.finish()
+        out.write_all(&marks.frames.to_bytes())?;
+        out.write_all(&marks.ledger.to_bytes())?;
+        out.finish().map(drop)
     })
 }
 
 impl Checkpoint<'static> {
-    /// Reads the checkpoint of the case called `case`, every bit as it was written.
+    /// Reads the checkpoint of a run of this origin, every bit as it was written.
     ///
     /// # Errors
     /// [`Error::Io`] if there is none; [`Error::Damaged`] if it is truncated or altered; [`Error::Mismatch`] if it
-    /// was written by another version of granflow (whose last bits may differ) or for another case.
-    pub fn read(path: &Path, case: &str) -> Result<Self, Error> {
+    /// was written by another version of granflow (whose last bits may differ), for another case, or with other inputs.
+    pub fn read(path: &Path, origin: &Origin) -> Result<(Self, Marks), Error> {
         let unread = || Error::io(path, "read");
         let file = File::open(path).map_err(unread())?;
         let size = file.metadata().map_err(unread())?.len();
@@ -159,17 +200,29 @@ impl Checkpoint<'static> {
         let mut front = file.numbers(1 + header.scalars.len()).map_err(unread())?;
         let time = front.remove(0);
         let mut arrays = Vec::new();
-        for (name, length) in &header.arrays {
-            arrays.push((name.clone(), Numbers::Double(file.numbers(*length).map_err(unread())?.into())));
+        for (name, length, precision) in &header.arrays {
+            let numbers = match precision {
+                Precision::F64 => file.numbers(*length).map(|values| Numbers::Double(values.into())),
+                Precision::F32 => file.singles(*length).map(|values| Numbers::Single(values.into())),
+            };
+            arrays.push((name.clone(), numbers.map_err(unread())?));
         }
+        let mut mark = || -> io::Result<Mark> {
+            let mut bytes = [0; Mark::BYTES];
+            file.read_exact(&mut bytes)?;
+            Ok(Mark::from_bytes(bytes))
+        };
+        let [frames, ledger] = [mark(), mark()];
+        let marks = Marks { frames: frames.map_err(unread())?, ledger: ledger.map_err(unread())? };
         let (computed, mut crc) = (file.crc.clone().finalize(), [0; 4]);
         file.read_exact(&mut crc).map_err(unread())?;
         if crc != computed.to_le_bytes() {
             return Err(altered(path));
         }
-        header.check(path, case)?;
-        let scalars = header.scalars.into_iter().zip(front).collect();
-        Ok(Self { case: header.case, step: header.step, time, scalars, arrays })
+        header.check(path, origin)?;
+        let Header { origin, ended, step, scalars, .. } = header;
+        let scalars = scalars.into_iter().zip(front).collect();
+        Ok((Self { origin, ended, step, time, scalars, arrays }, marks))
     }
 
     /// The array called `name`, which is then no longer in the checkpoint.
@@ -216,17 +269,21 @@ impl Header {
         let mut header = vec![0; (front - before) as usize];
         file.read_exact(&mut header).map_err(unread())?;
         let header: Header = serde_json::from_slice(&header).map_err(|_| altered(path))?;
-        let lengths = header.arrays.iter().map(|(_, length)| *length as u64);
-        let numbers = lengths.fold(1 + header.scalars.len() as u64, u64::saturating_add); // a damaged length may be huge
-        let wanted = numbers.saturating_mul(8).saturating_add(4).saturating_add(front);
+        // A damaged length may be huge.
+        let sizes = header
+            .arrays
+            .iter()
+            .map(|(_, length, precision)| (*length as u64).saturating_mul(precision.width() as u64));
+        let numbers = sizes.fold(8 * (1 + header.scalars.len() as u64), u64::saturating_add);
+        let wanted = numbers.saturating_add(2 * Mark::BYTES as u64 + 4).saturating_add(front);
         if size != wanted {
             return Err(if size < wanted { short(wanted) } else { altered(path) });
         }
         Ok(header)
     }
 
-    /// Checks that it is of this version of granflow and of the case called `case`.
-    fn check(&self, path: &Path, case: &str) -> Result<(), Error> {
+    /// Checks that it is of this version of granflow and of this origin.
+    fn check(&self, path: &Path, origin: &Origin) -> Result<(), Error> {
         if self.granflow != VERSION {
             let problem = format!(
                 "written by granflow {}, this is {VERSION}, so the run could not go on bit for bit; \
@@ -235,11 +292,17 @@ impl Header {
             );
             return Err(Error::mismatch(path, problem));
         }
-        if self.case != case {
+        if self.origin.case != origin.case {
             let problem = format!(
-                "the checkpoint is of another case ({}) than the one given ({case}); \
+                "the checkpoint is of another case ({}) than the one given ({}); \
                  give the case as it was, another --out, or start again without --resume",
-                self.case
+                self.origin.case, origin.case
+            );
+            return Err(Error::mismatch(path, problem));
+        }
+        if let Some(difference) = difference(&self.origin.inputs, &origin.inputs) {
+            let problem = format!(
+                "{difference}, so the run cannot go on; put it back as it was, or start again without --resume"
             );
             return Err(Error::mismatch(path, problem));
         }
@@ -270,102 +333,29 @@ impl<R: Read> Read for Hashed<R> {
 impl<R: Read> Hashed<R> {
     /// The next numbers, of which no second copy is made.
     fn numbers(&mut self, count: usize) -> io::Result<Vec<f64>> {
+        self.next(count, f64::from_le_bytes)
+    }
+
+    /// As [`Hashed::numbers`], in single precision.
+    fn singles(&mut self, count: usize) -> io::Result<Vec<f32>> {
+        self.next(count, f32::from_le_bytes)
+    }
+
+    fn next<T, const WIDTH: usize>(
+        &mut self,
+        count: usize,
+        number: fn([u8; WIDTH]) -> T,
+    ) -> io::Result<Vec<T>> {
         let mut numbers = Vec::with_capacity(count);
-        let mut bytes = vec![0; 8 * AT_ONCE.min(count)];
+        let mut bytes = vec![0; WIDTH * AT_ONCE.min(count)];
         while numbers.len() < count {
-            let part = &mut bytes[..8 * AT_ONCE.min(count - numbers.len())];
+            let part = &mut bytes[..WIDTH * AT_ONCE.min(count - numbers.len())];
             self.read_exact(part)?;
-            numbers.extend(part.as_chunks().0.iter().map(|&bytes| f64::from_le_bytes(bytes)));
+            numbers.extend(part.as_chunks().0.iter().map(|&bytes| number(bytes)));
         }
         Ok(numbers)
     }
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-    use std::fs;
-
-    fn double(values: impl IntoIterator<Item = f64>) -> Numbers<'static> {
-        Numbers::Double(values.into_iter().collect())
-    }
-
-    fn sample() -> Checkpoint<'static> {
-        Checkpoint {
-            case: case_hash("title = \"x\""),
-            step: u64::MAX,
-            time: 0.1 + 0.2,
-            scalars: vec![("mass".into(), -0.0), ("peak".into(), f64::INFINITY)],
-            arrays: vec![
-                ("thickness".into(), double([1.0, f64::from_bits(0x7ff8_0000_0000_beef), 5e-324])),
-                ("nothing".into(), double([])),
-                ("momentum".into(), double((0..70_000).map(|i| f64::from(i).sin()))),
-                ("peak_speed".into(), Numbers::Single(Cow::Borrowed(&[0.1, f32::MIN_POSITIVE]))),
-            ],
-        }
-    }
-
-    #[test]
-    fn every_bit_comes_back() {
-        let folder = tempfile::tempdir().unwrap();
-        let path = folder.path().join("checkpoint/state");
-        let written = sample();
-        written.write(&path).unwrap();
-        let mut read = Checkpoint::read(&path, &written.case).unwrap();
-        let bytes = |numbers: Option<&Numbers>| {
-            let mut bytes = Vec::new();
-            numbers.unwrap().encode(&mut bytes);
-            bytes
-        };
-        assert_eq!((read.step, read.time.to_bits()), (u64::MAX, written.time.to_bits()));
-        assert_eq!(read.scalar("mass").unwrap().to_bits(), (-0.0_f64).to_bits());
-        assert_eq!(read.scalars, written.scalars);
-        for name in ["thickness", "nothing", "momentum", "peak_speed"] {
-            assert_eq!(bytes(read.array(name)), bytes(written.array(name)), "{name}");
-        }
-        assert_eq!(read.take("peak_speed").unwrap(), [f64::from(0.1_f32), f64::from(f32::MIN_POSITIVE)]);
-        assert!(read.array("absent").is_none());
-    }
-
-    #[test]
-    fn damage_is_named() {
-        let folder = tempfile::tempdir().unwrap();
-        let path = folder.path().join("state");
-        let sample = sample();
-        sample.write(&path).unwrap();
-        let sound = fs::read(&path).unwrap();
-        let message = |bytes: &[u8]| {
-            fs::write(&path, bytes).unwrap();
-            Checkpoint::read(&path, &sample.case).unwrap_err().to_string()
-        };
-        for cut in [MAGIC.len() + 2, MAGIC.len() + 20, sound.len() / 2, sound.len() - 1] {
-            assert!(message(&sound[..cut]).contains("truncated"), "{cut}");
-        }
-        for at in [MAGIC.len() + 40, sound.len() / 2, sound.len() - 1] {
-            let mut bytes = sound.clone();
-            bytes[at] ^= 0x10;
-            assert!(message(&bytes).contains("checksum"), "{at}");
-        }
-        assert!(message(b"hello").contains("not a checkpoint"));
-        assert!(message(b"granflow checkpoint 9\n").contains("layout"));
-        assert!(message(&[&sound[..], b"x"].concat()).contains("checksum"));
-    }
-
-    #[test]
-    fn another_case_or_version_is_refused() {
-        let folder = tempfile::tempdir().unwrap();
-        let path = folder.path().join("state");
-        sample().write(&path).unwrap();
-        let other = Checkpoint::read(&path, &case_hash("title = \"y\"")).unwrap_err();
-        assert!(matches!(other, Error::Mismatch { .. }) && other.to_string().contains("another case"));
-        let mut bytes = fs::read(&path).unwrap();
-        let at = bytes.windows(VERSION.len()).position(|window| window == VERSION.as_bytes()).unwrap();
-        bytes[at] = b'9';
-        let end = bytes.len() - 4;
-        let crc = crc32fast::hash(&bytes[..end]);
-        bytes[end..].copy_from_slice(&crc.to_le_bytes());
-        fs::write(&path, bytes).unwrap();
-        let other = Checkpoint::read(&path, &sample().case).unwrap_err().to_string();
-        assert!(other.contains("written by granflow 9"), "{other}");
-    }
-}
+mod tests;

@@ -6,6 +6,7 @@
 //! tear only the last one: whoever finds an earlier one torn knows that the disk has failed. The sync is waited
 //! for beside the steps.
 
+use super::mark::Mark;
 use super::{Error, Precision, Summed, whole_file};
 pub use crate::field::Field;
 use serde::{Deserialize, Serialize};
@@ -58,6 +59,8 @@ pub struct Frames {
     times: Vec<f64>,
     /// Bytes before the first frame.
     start: u64,
+    /// Checksums of the header and of the frames.
+    crcs: Vec<u32>,
 }
 
 impl Frames {
@@ -85,7 +88,7 @@ impl Frames {
     pub fn open(path: &Path) -> Result<(Self, Option<Torn>), Error> {
         let mut file =
             OpenOptions::new().read(true).write(true).open(path).map_err(Error::io(path, "open"))?;
-        let (header, start) = read_header(path, &mut file)?;
+        let (header, start, crc) = read_header(path, &mut file)?;
         let mut frames = Self {
             path: path.to_owned(),
             file,
@@ -93,6 +96,7 @@ impl Frames {
             fields: header.fields,
             times: Vec::new(),
             start,
+            crcs: vec![crc],
         };
         let length = frames.file.metadata().map_err(Error::io(path, "read"))?.len();
         let whole = (length - start) / frames.frame_size();
@@ -108,8 +112,10 @@ impl Frames {
                 rest -= part.len();
             }
             frames.file.read_exact(&mut crc).map_err(Error::io(path, "read"))?;
-            if crc == sum.finalize().to_le_bytes() {
+            let sum = sum.finalize();
+            if crc == sum.to_le_bytes() {
                 frames.times.extend(time);
+                frames.crcs.push(sum);
             } else if frame + 1 < whole {
                 let problem = format!(
                     "frame {frame} of {whole} does not match its checksum: the file was altered or the disk failed; \
@@ -169,7 +175,7 @@ impl Frames {
         }
         let (end, size) = (self.end(), self.frame_size());
         let mut file = &self.file;
-        let write = || -> io::Result<()> {
+        let write = || -> io::Result<u32> {
             file.seek(SeekFrom::Start(end))?;
             let mut out = Summed::new(&mut file);
             out.write_all(&time.to_le_bytes())?;
@@ -178,12 +184,16 @@ impl Frames {
                 let problem = format!("a frame has {} bytes instead of {size}", out.bytes + 4);
                 return Err(io::Error::other(Error::invalid(&self.path, problem)));
             }
-            out.finish()?;
-            self.file.sync_data()
+            let crc = out.finish()?;
+            self.file.sync_data()?;
+            Ok(crc)
         };
-        if let Err(refused) = write() {
-            let _ = self.file.set_len(end); // if this fails too, `open` drops the torn end
-            return Err(Error::io(&self.path, "write")(refused));
+        match write() {
+            Ok(crc) => self.crcs.push(crc),
+            Err(refused) => {
+                let _ = self.file.set_len(end); // if this fails too, `open` drops the torn end
+                return Err(Error::io(&self.path, "write")(refused));
+            }
         }
         self.times.push(time);
         Ok(())
@@ -201,21 +211,45 @@ impl Frames {
             fields: self.fields.clone(),
             times: self.times.clone(),
             start: self.start,
+            crcs: self.crcs.clone(),
         })
     }
 
-    /// Drops the frames later than `time`, those after the checkpoint that a run goes on from; returns how many.
+    /// How far the store has come: the frames, and a checksum of the header and of all of them.
+    #[must_use]
+    pub fn mark(&self) -> Mark {
+        self.mark_at(self.times.len())
+    }
+
+    fn mark_at(&self, count: usize) -> Mark {
+        let mut crc = crc32fast::Hasher::new();
+        self.crcs[..=count].iter().for_each(|frame| crc.update(&frame.to_le_bytes()));
+        Mark { count: count as u64, crc: crc.finalize() }
+    }
+
+    /// Drops the frames after `mark`, where the checkpoint was written that a run goes on from; returns how many.
     ///
     /// # Errors
-    /// [`Error::Io`] if the file cannot be shortened.
-    pub fn truncate_to(&mut self, time: f64) -> Result<usize, Error> {
-        let before = self.times.len();
-        self.times.truncate(self.times.partition_point(|&t| t <= time));
+    /// [`Error::Mismatch`] if the frames before it are not those of then; [`Error::Io`] if the file cannot be shortened.
+    pub fn truncate_to(&mut self, mark: Mark) -> Result<usize, Error> {
+        let (before, count) = (self.times.len(), mark.count as usize);
+        if count > before || self.mark_at(count) != mark {
+            let what = if count > before {
+                format!("it holds {before} sound frames, the checkpoint goes on from {count}")
+            } else {
+                format!("its first {count} frames are not those that the checkpoint goes on from")
+            };
+            let problem =
+                format!("{what}; put the file back as the run left it, or start again without --resume");
+            return Err(Error::mismatch(&self.path, problem));
+        }
+        self.times.truncate(count);
+        self.crcs.truncate(count + 1);
         self.file
             .set_len(self.end())
             .and_then(|()| self.file.sync_all())
             .map_err(Error::io(&self.path, "shorten"))?;
-        Ok(before - self.times.len())
+        Ok(before - count)
     }
 
     /// Field number `field` of frame number `frame`, as 64-bit numbers.
@@ -289,7 +323,8 @@ impl Frames {
     }
 }
 
-fn read_header(path: &Path, file: &mut File) -> Result<(Header, u64), Error> {
+/// The header, where it ends, and its checksum.
+fn read_header(path: &Path, file: &mut File) -> Result<(Header, u64, u32), Error> {
     let alien = || Error::damaged(path, "this is not a store of frames that this version of granflow writes");
     let mut lead = [0; MAGIC.len() + 4];
     file.read_exact(&mut lead).map_err(|_| alien())?;
@@ -301,97 +336,16 @@ fn read_header(path: &Path, file: &mut File) -> Result<(Header, u64), Error> {
     let mut bytes = vec![0; length as usize + 4];
     file.read_exact(&mut bytes).map_err(|_| alien())?;
     let (header, crc) = bytes.split_at(length as usize);
-    if crc != crc32fast::hash(header).to_le_bytes() {
+    let sum = crc32fast::hash(header);
+    if crc != sum.to_le_bytes() {
         return Err(Error::damaged(
             path,
             "its header does not match its checksum; start the run again without --resume",
         ));
     }
     let header = serde_json::from_slice(header).map_err(|_| alien())?;
-    Ok((header, (lead.len() + bytes.len()) as u64))
+    Ok((header, (lead.len() + bytes.len()) as u64, sum))
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-    use std::fs;
-
-    fn fields() -> Vec<Field> {
-        vec![Field { name: "thickness".into(), length: 3 }, Field { name: "velocity_x".into(), length: 2 }]
-    }
-
-    fn three(path: &Path) -> Frames {
-        let mut frames = Frames::create(path, Precision::F64, fields()).unwrap();
-        for step in 0..3 {
-            let t = f64::from(step);
-            frames.append(t, &[&[t, f64::NAN, -0.0], &[t / 3.0, 1e-310]]).unwrap();
-        }
-        frames
-    }
-
-    #[test]
-    fn every_bit_comes_back() {
-        let folder = tempfile::tempdir().unwrap();
-        let path = folder.path().join("frames");
-        drop(three(&path));
-        let (mut frames, torn) = Frames::open(&path).unwrap();
-        assert_eq!((torn, frames.times()), (None, &[0.0, 1.0, 2.0][..]));
-        let bits = |values: Vec<f64>| values.into_iter().map(f64::to_bits).collect::<Vec<_>>();
-        assert_eq!(bits(frames.read(2, 0).unwrap()), bits(vec![2.0, f64::NAN, -0.0]));
-        assert_eq!(frames.read(1, frames.position("velocity_x").unwrap()).unwrap(), [1.0 / 3.0, 1e-310]);
-        assert!(frames.read(3, 0).is_err());
-    }
-
-    #[test]
-    fn a_torn_last_frame_is_dropped_with_a_warning_and_the_store_goes_on() {
-        let folder = tempfile::tempdir().unwrap();
-        let path = folder.path().join("frames");
-        let end = three(&path).end();
-        for cut in [1, 30, 51] {
-            OpenOptions::new().write(true).open(&path).unwrap().set_len(end - cut).unwrap();
-            let (mut frames, torn) = Frames::open(&path).unwrap();
-            assert_eq!(torn, Some(Torn { path: path.clone(), bytes: 52 - cut, kept: 2 }));
-            frames.append(2.0, &[&[7.0; 3], &[8.0; 2]]).unwrap();
-        }
-        let (mut frames, torn) = Frames::open(&path).unwrap();
-        assert_eq!((torn, frames.read(2, 1).unwrap()), (None, vec![8.0; 2]));
-    }
-
-    #[test]
-    fn a_wrong_checksum_drops_the_last_frame_but_refuses_an_earlier_one() {
-        let folder = tempfile::tempdir().unwrap();
-        let path = folder.path().join("frames");
-        let end = three(&path).end() as usize;
-        let sound = fs::read(&path).unwrap();
-        let damage = |at: usize| {
-            let mut bytes = sound.clone();
-            bytes[at] ^= 1;
-            fs::write(&path, bytes).unwrap();
-            Frames::open(&path)
-        };
-        assert_eq!(damage(end - 10).unwrap().1.unwrap().kept, 2);
-        let message = damage(end - 100).unwrap_err().to_string();
-        assert!(message.contains("frame 1 of 3"), "{message}");
-        assert!(damage(25).unwrap_err().to_string().contains("header"));
-        assert!(damage(3).unwrap_err().to_string().contains("not a store"));
-    }
-
-    #[test]
-    fn truncating_goes_back_to_the_checkpoint() {
-        let folder = tempfile::tempdir().unwrap();
-        let mut frames = three(&folder.path().join("frames"));
-        assert_eq!(frames.truncate_to(1.0).unwrap(), 1);
-        assert_eq!(Frames::open(frames.path()).unwrap().0.times(), [0.0, 1.0]);
-    }
-
-    #[test]
-    fn wrong_shapes_and_times_are_refused() {
-        let folder = tempfile::tempdir().unwrap();
-        let mut frames = three(&folder.path().join("frames"));
-        assert!(frames.append(3.0, &[&[0.0; 3], &[0.0; 3]]).is_err());
-        assert!(frames.append(3.0, &[&[0.0; 3]]).is_err());
-        assert!(frames.append(2.0, &[&[0.0; 3], &[0.0; 2]]).is_err());
-        assert!(frames.append(f64::NAN, &[&[0.0; 3], &[0.0; 2]]).is_err());
-        assert_eq!(frames.times().len(), 3);
-    }
-}
+mod tests;

@@ -1,5 +1,6 @@
 //! The ledger `mass.csv`: where the mass is at every output instant, and the sums it rests on.
 
+use super::mark::Mark;
 use super::{Error, whole_file};
 pub use crate::entry::Entry;
 use std::fs::{self, OpenOptions};
@@ -55,6 +56,11 @@ fn cell(value: f64) -> String {
     if value.is_nan() { String::new() } else { format!("{value:?}") }
 }
 
+/// The checksum of a line without its end.
+fn crc(line: &str) -> u32 {
+    crc32fast::hash(line.as_bytes())
+}
+
 impl Entry {
     fn line(&self) -> String {
         let numbers = |values: &[f64]| values.iter().map(|&v| cell(v)).collect::<Vec<_>>().join(",");
@@ -102,6 +108,8 @@ pub struct Ledger {
     path: PathBuf,
     header: String,
     entries: Vec<Entry>,
+    /// Checksums of the header and of the lines.
+    crcs: Vec<u32>,
 }
 
 impl Ledger {
@@ -110,7 +118,9 @@ impl Ledger {
     /// # Errors
     /// [`Error::Io`] if the file cannot be written.
     pub fn create(path: &Path, exits: [&str; 5]) -> Result<Self, Error> {
-        let ledger = Self { path: path.to_owned(), header: header(exits), entries: Vec::new() };
+        let header = header(exits);
+        let crcs = vec![crc(&header)];
+        let ledger = Self { path: path.to_owned(), header, entries: Vec::new(), crcs };
         ledger.rewrite()?;
         Ok(ledger)
     }
@@ -126,17 +136,20 @@ impl Ledger {
         if !is_header(header) {
             return Err(Error::damaged(path, format!("line 1 should be the header {}", COLUMNS.join(","))));
         }
-        let mut entries = Vec::new();
+        let (mut entries, mut crcs) = (Vec::new(), vec![crc(header)]);
         let mut torn = false;
         for (number, line) in lines {
             match line.strip_suffix('\n').map(|line| line.trim_end_matches('\r')) {
                 None => torn = true, // only the last line can lack its end
-                Some(line) => entries.push(Entry::parse(line).ok_or_else(|| {
-                    Error::damaged(path, format!("line {} is no line of a ledger: {line:?}", number + 1))
-                })?),
+                Some(line) => {
+                    entries.push(Entry::parse(line).ok_or_else(|| {
+                        Error::damaged(path, format!("line {} is no line of a ledger: {line:?}", number + 1))
+                    })?);
+                    crcs.push(crc(line));
+                }
             }
         }
-        let ledger = Self { path: path.to_owned(), header: header.to_owned(), entries };
+        let ledger = Self { path: path.to_owned(), header: header.to_owned(), entries, crcs };
         if torn {
             ledger.rewrite()?;
         }
@@ -151,10 +164,12 @@ impl Ledger {
         let mut file =
             OpenOptions::new().append(true).open(&self.path).map_err(Error::io(&self.path, "open"))?;
         let before = file.metadata().map_err(Error::io(&self.path, "read"))?.len();
-        if let Err(refused) = file.write_all(entry.line().as_bytes()) {
+        let line = entry.line();
+        if let Err(refused) = file.write_all(line.as_bytes()) {
             let _ = file.set_len(before); // if this fails too, `open` drops the torn line
             return Err(Error::io(&self.path, "write")(refused));
         }
+        self.crcs.push(crc(line.trim_end()));
         self.entries.push(entry);
         Ok(())
     }
@@ -168,15 +183,38 @@ impl Ledger {
         file.sync_data().map_err(Error::io(&self.path, "write"))
     }
 
-    /// Drops the lines later than `time`, those after the checkpoint that a run goes on from; returns how many.
+    /// How far the ledger has come: the lines, and a checksum of the header and of all of them.
+    #[must_use]
+    pub fn mark(&self) -> Mark {
+        self.mark_at(self.entries.len())
+    }
+
+    fn mark_at(&self, count: usize) -> Mark {
+        let mut crc = crc32fast::Hasher::new();
+        self.crcs[..=count].iter().for_each(|line| crc.update(&line.to_le_bytes()));
+        Mark { count: count as u64, crc: crc.finalize() }
+    }
+
+    /// Drops the lines after `mark`, where the checkpoint was written that a run goes on from; returns how many.
     ///
     /// # Errors
-    /// [`Error::Io`]; the file then keeps all its lines.
-    pub fn truncate_to(&mut self, time: f64) -> Result<usize, Error> {
-        let before = self.entries.len();
-        self.entries.retain(|entry| entry.time <= time);
+    /// [`Error::Mismatch`] if the lines before it are not those of then; [`Error::Io`], the file then keeps all its lines.
+    pub fn truncate_to(&mut self, mark: Mark) -> Result<usize, Error> {
+        let (before, count) = (self.entries.len(), mark.count as usize);
+        if count > before || self.mark_at(count) != mark {
+            let what = if count > before {
+                format!("it holds {before} lines below its header, the checkpoint goes on from {count}")
+            } else {
+                format!("its first {count} lines are not those that the checkpoint goes on from")
+            };
+            let problem =
+                format!("{what}; put the file back as the run left it, or start again without --resume");
+            return Err(Error::mismatch(&self.path, problem));
+        }
+        self.entries.truncate(count);
+        self.crcs.truncate(count + 1);
         self.rewrite()?;
-        Ok(before - self.entries.len())
+        Ok(before - count)
     }
 
     /// The lines, in the order they were written.
@@ -241,8 +279,18 @@ mod tests {
         let path = folder.path().join("mass.csv");
         let mut ledger = Ledger::create(&path, SIDES).unwrap();
         (0..4).for_each(|step| ledger.append(entry(step)).unwrap());
-        assert_eq!(ledger.truncate_to(entry(1).time).unwrap(), 2);
-        assert_eq!(Ledger::open(&path).unwrap().entries().last().unwrap().step, 1);
+        let (four, two) = (ledger.mark(), ledger.mark_at(2));
+        let whole = fs::read_to_string(&path).unwrap();
+        assert_eq!(ledger.truncate_to(two).unwrap(), 2);
+        let mut ledger = Ledger::open(&path).unwrap();
+        assert_eq!((ledger.entries().last().unwrap().step, ledger.mark()), (1, two));
+        let lost = ledger.truncate_to(four).unwrap_err().to_string();
+        assert!(lost.contains("2 lines below its header") && lost.contains("from 4"), "{lost}");
+        fs::write(&path, whole.replacen("0.1", "0.2", 1)).unwrap();
+        let other = Ledger::open(&path).unwrap().truncate_to(four).unwrap_err().to_string();
+        assert!(other.contains("first 4 lines are not those"), "{other}");
+        fs::write(&path, whole).unwrap();
+        assert_eq!(Ledger::open(&path).unwrap().truncate_to(four).unwrap(), 0);
     }
 
     #[test]
@@ -257,7 +305,8 @@ mod tests {
         assert!(text.ends_with(",12,0,,\n"), "{text}");
         let read = Ledger::open(&path).unwrap();
         assert_eq!((read.entries()[0].out[4], read.entries()[0].max_speed.is_nan()), (0.5, true));
-        assert_eq!(Ledger::open(&path).unwrap().truncate_to(f64::INFINITY).unwrap(), 0);
+        let mut read = Ledger::open(&path).unwrap();
+        assert_eq!(read.truncate_to(read.mark()).unwrap(), 0);
         assert_eq!(fs::read_to_string(&path).unwrap(), text);
     }
 

@@ -18,7 +18,8 @@ pub enum DriveError {
     Sink(#[from] SinkError),
 }
 
-/// Step `run` to the first of its `ends`, or until a sink asks for the end. No step is cut at an instant that a sink waits
+/// Step `run` to the first of its `ends`, or until a sink asks for the end, which it may between two instants of one step too;
+/// then no sink hears of that step. No step is cut at an instant that a sink waits
 /// for: the sink is shown the state there on the straight line between the begin and the end of the step that passes it
 /// ([`Stepper::show`](super::Stepper::show)). So what is written changes nothing of what is computed.
 ///
@@ -34,7 +35,7 @@ pub fn drive(run: &mut dyn Run, ends: &Ends, sinks: &mut [&mut dyn Sink]) -> Res
         run.track_trickle(thickness);
     }
     loop {
-        if sinks.iter().any(|sink| sink.wants_end()) {
+        if wants_end(sinks) {
             return Ok(StopReason::Interrupted);
         }
         if let Some(reason) = reached(run, ends, last) {
@@ -46,11 +47,17 @@ pub fn drive(run: &mut dyn Run, ends: &Ends, sinks: &mut [&mut dyn Sink]) -> Res
         if dt.is_infinite() {
             return Ok(StopReason::AtRest);
         }
-        show_instants(run, sinks, time)?;
+        if !show_instants(run, sinks, time)? {
+            return Ok(StopReason::Interrupted);
+        }
         for sink in sinks.iter_mut() {
             sink.after_step(run)?;
         }
     }
+}
+
+fn wants_end(sinks: &[&mut dyn Sink]) -> bool {
+    sinks.iter().any(|sink| sink.wants_end())
 }
 
 /// The first instant that a sink waits for.
@@ -62,16 +69,19 @@ fn next_instant(sinks: &[&mut dyn Sink]) -> f64 {
 const ROUNDING: f64 = 1e-9;
 
 /// Show the sinks the instants that the last step, from time `begin` on, passed, in their order. Of one that had passed before
-/// (somebody else stepped the run) they see the end of the step.
-fn show_instants(run: &mut dyn Run, sinks: &mut [&mut dyn Sink], begin: f64) -> Result<(), SinkError> {
+/// (somebody else stepped the run) they see the end of the step. False where a sink asked for the end before the last of them.
+fn show_instants(run: &mut dyn Run, sinks: &mut [&mut dyn Sink], begin: f64) -> Result<bool, SinkError> {
     let end = run.time();
     let near = ROUNDING * (end - begin);
+    let mut first = true;
     loop {
         let instant = next_instant(sinks);
-        if instant > end + near {
+        let all = instant > end + near;
+        if all || (!first && wants_end(sinks)) {
             run.stepper_mut().show_end();
-            return Ok(());
+            return Ok(all);
         }
+        first = false;
         let at_end = instant < begin || end - instant <= near;
         run.stepper_mut().show(if at_end { end } else { instant });
         for sink in sinks.iter_mut().filter(|sink| sink.next_instant() == instant) {

@@ -6,6 +6,8 @@ use std::borrow::Cow;
 /// Everything that a run needs to go on bit for bit: see [`Run::save`](super::Run::save).
 #[derive(Clone, Debug, PartialEq)]
 pub struct Saved<'a> {
+    /// Cells along x and y.
+    pub cells: [usize; 2],
     /// Time, steps and the ledger, as [`Stepper::clock`](granflow_engine::Stepper::clock) gives them.
     pub clock: Vec<f64>,
     /// The components of the state, padded.
@@ -14,6 +16,10 @@ pub struct Saved<'a> {
     pub maps: Vec<(&'static str, Cow<'a, [f32]>)>,
     /// Every cell was at rest.
     pub at_rest: bool,
+    /// How fast each component changed in the last step, as [`Run::drift`](super::Run::drift).
+    pub drift: Vec<f64>,
+    /// What the model keeps beside the state, as [`Physics::save`](super::Physics::save) gives it.
+    pub model: Vec<f64>,
     /// Peaks so far.
     pub record: Record,
 }
@@ -22,12 +28,15 @@ impl Saved<'_> {
     /// The same with numbers of its own.
     #[must_use]
     pub fn into_owned(self) -> Saved<'static> {
-        let Saved { clock, state, maps, at_rest, record } = self;
+        let Saved { cells, clock, state, maps, at_rest, drift, model, record } = self;
         Saved {
+            cells,
             clock,
             state: state.into_iter().map(|part| Cow::Owned(part.into_owned())).collect(),
             maps: maps.into_iter().map(|(name, map)| (name, Cow::Owned(map.into_owned()))).collect(),
             at_rest,
+            drift,
+            model,
             record,
         }
     }

@@ -59,8 +59,14 @@ pub trait Physics<const D: usize>: Send + Sync + 'static {
     fn prepare(&mut self, _simulation: &mut Simulation<D, Self::Scheme>, _until: f64) -> f64 {
         f64::INFINITY
     }
-    /// The state is another one now: what is kept of its time and forcing is void.
-    fn restored(&mut self) {}
+    /// What decides how the run goes on beside state and ledger, such as the time from which the present forcing holds.
+    fn save(&self) -> Vec<f64> {
+        Vec::new()
+    }
+    /// Take up what [`Physics::save`] gave and set the forcing of then; state and ledger follow. False where it does not fit.
+    fn restore(&mut self, _simulation: &mut Simulation<D, Self::Scheme>, saved: &[f64]) -> bool {
+        saved.is_empty()
+    }
     /// Nothing that acts from outside, a source say, begins or changes after `time`.
     fn is_settled(&self, _time: f64) -> bool {
         true
@@ -75,8 +81,8 @@ pub trait Physics<const D: usize>: Send + Sync + 'static {
     fn flows(&self, _simulation: &Simulation<D, Self::Scheme>, _trickle: f64) -> bool {
         true
     }
-    /// See [`Run::is_steady`].
-    fn is_steady(&self, _simulation: &Simulation<D, Self::Scheme>, _rate: f64) -> bool {
+    /// See [`Run::is_steady`]; `drift` is [`Run::drift`].
+    fn is_steady(&self, _simulation: &Simulation<D, Self::Scheme>, _drift: &[f64], _rate: f64) -> bool {
         false
     }
     /// See [`Run::is_equilibrium`].
@@ -91,8 +97,13 @@ pub trait Physics<const D: usize>: Send + Sync + 'static {
     fn elevation(&self, _simulation: &Simulation<D, Self::Scheme>) -> Vec<f64> {
         Vec::new()
     }
-    /// See [`Run::numbers`].
-    fn numbers(&self, _simulation: &Simulation<D, Self::Scheme>, _record: &Record) -> Numbers {
+    /// See [`Run::numbers`]; `drift` is [`Run::drift`].
+    fn numbers(
+        &self,
+        _simulation: &Simulation<D, Self::Scheme>,
+        _drift: &[f64],
+        _record: &Record,
+    ) -> Numbers {
         Numbers::default()
     }
 }
@@ -107,6 +118,8 @@ pub struct Simulated<const D: usize, P: Physics<D>> {
     tracks_energy: bool,
     /// Thickness of a trickle, if that is looked for.
     trickle: Option<f64>,
+    /// The drift of the step before [`Run::restore`], until the next step.
+    restored_drift: Option<Vec<f64>>,
 }
 
 impl<const D: usize, P: Physics<D>> Simulated<D, P> {
@@ -126,7 +139,16 @@ impl<const D: usize, P: Physics<D>> Simulated<D, P> {
             stepping: Duration::ZERO,
         };
         let fields = physics.fields();
-        Simulated { simulation, physics, fields, plane, record, tracks_energy: false, trickle: None }
+        Simulated {
+            simulation,
+            physics,
+            fields,
+            plane,
+            record,
+            tracks_energy: false,
+            trickle: None,
+            restored_drift: None,
+        }
     }
 
     /// The kinetic energy of the state as it stands, into the record.
@@ -203,6 +225,7 @@ impl<const D: usize, P: Physics<D>> Run for Simulated<D, P> {
         let begun = Instant::now();
         let advanced = self.simulation.advance(until);
         self.record.stepping += begun.elapsed();
+        self.restored_drift = None;
         let dt = advanced?;
         self.record.peak_speed = self.record.peak_speed.max(self.simulation.speed());
         if self.tracks_energy {
@@ -218,7 +241,10 @@ impl<const D: usize, P: Physics<D>> Run for Simulated<D, P> {
         Ok(dt)
     }
     fn is_steady(&self, rate: f64) -> bool {
-        self.physics.is_steady(&self.simulation, rate)
+        self.physics.is_steady(&self.simulation, self.drift(), rate)
+    }
+    fn drift(&self) -> &[f64] {
+        self.restored_drift.as_deref().unwrap_or_else(|| self.simulation.drift())
     }
     fn is_equilibrium(&self) -> bool {
         self.physics.is_equilibrium()
@@ -266,12 +292,21 @@ impl<const D: usize, P: Physics<D>> Run for Simulated<D, P> {
         self.plane.clone().with_bed(|| self.physics.elevation(&self.simulation))
     }
     fn numbers(&self) -> Numbers {
-        self.physics.numbers(&self.simulation, &self.record)
+        self.physics.numbers(&self.simulation, self.drift(), &self.record)
+    }
+
+    fn bytes_per_cell(&self, instants: bool) -> usize {
+        let maps = self.has_speed();
+        if instants {
+            return self.stepper().bytes_per_cell(maps);
+        }
+        Simulation::<D, P::Scheme>::bytes_per_cell(maps)
     }
 
     fn save(&self) -> Saved<'_> {
         let maps = self.simulation.maps().into_iter().flat_map(granflow_engine::Maps::named);
         Saved {
+            cells: self.stepper().cells(),
             clock: self.simulation.clock(),
             state: self
                 .simulation
@@ -282,21 +317,36 @@ impl<const D: usize, P: Physics<D>> Run for Simulated<D, P> {
                 .collect(),
             maps: maps.map(|(name, map)| (name, Cow::Borrowed(map))).collect(),
             at_rest: self.simulation.at_rest(),
+            drift: self.drift().to_vec(),
+            model: self.physics.save(),
             record: self.record,
         }
     }
     fn restore(&mut self, saved: Saved<'static>) -> Result<(), String> {
-        let Saved { clock, state, mut maps, at_rest, record } = saved;
+        let Saved { cells, clock, state, mut maps, at_rest, drift, model, record } = saved;
+        let own = self.stepper().cells();
+        if cells != own {
+            let [[x, y], [own_x, own_y]] = [cells, own];
+            return Err(format!("its state has {x} x {y} cells, the run has {own_x} x {own_y}"));
+        }
+        let held = self.simulation.arrays().components();
+        let alike = state.iter().map(|part| part.len()).eq(held.iter().map(|part| part.len()));
+        if !alike || drift.len() != self.drift().len() {
+            return Err("its state has another number of components, or of numbers in them".to_owned());
+        }
         for (name, map) in self.simulation.maps().into_iter().flat_map(granflow_engine::Maps::named) {
             if !maps.iter().any(|(own, values)| *own == name && values.len() == map.len()) {
                 return Err(format!("its map {name} is missing or has another shape"));
             }
         }
         let state = granflow_engine::Field::of(state.into_iter().map(Cow::into_owned).collect());
+        if !self.physics.restore(&mut self.simulation, &model) {
+            return Err("what it keeps of the model does not fit".to_owned());
+        }
         if !self.simulation.restore(&clock, state) {
             return Err("its state has another shape".to_owned());
         }
-        self.physics.restored();
+        self.restored_drift = Some(drift);
         if at_rest {
             self.simulation.sleep_all();
         }

@@ -7,9 +7,11 @@ mod writer;
 use super::schedule::{Due, Schedule};
 use super::{Sink, SinkError};
 use crate::output;
+use crate::output::checkpoint::Origin;
+use crate::output::folder::Folder;
 use crate::output::frames::Frames;
 use crate::output::ledger::{Entry, Ledger};
-use crate::output::summary::StopReason;
+use crate::output::summary::{StopReason, Summary};
 use crate::results::{FilesError, Finished};
 use crate::run::Run;
 use ending::Ending;
@@ -18,8 +20,11 @@ use std::path::{Path, PathBuf};
 use std::time::Instant;
 use writer::Writer;
 
-/// Seconds on the clock between two checkpoints.
-const CHECKPOINT: f64 = 30.0;
+/// Seconds on the clock from the first step to the checkpoint after it, and between two at most; the pause doubles from one
+/// to the next.
+const PAUSES: [f64; 2] = [0.5, 30.0];
+/// A checkpoint is saved again once this many times the last one's cost has passed.
+const CHECKPOINT: f64 = 50.0;
 /// The series are joined into `result.nc` again once this many times the last join's cost has passed.
 const JOIN: f64 = 20.0;
 
@@ -40,12 +45,21 @@ pub enum BeginError {
         /// What does not fit.
         problem: String,
     },
+    /// The run in the folder has ended, and nothing of it is left to do.
+    #[error("{}: this run has ended ({}), there is nothing to go on with", directory.display(), summary.stop_reason)]
+    Ended {
+        /// The folder.
+        directory: PathBuf,
+        /// How it ended.
+        summary: Box<Summary>,
+    },
 }
 
 /// Writes a run into a folder.
 pub struct Files {
-    directory: PathBuf,
+    folder: Folder,
     plan: RunPlan,
+    origin: Origin,
     command: String,
     writer: Writer,
     schedule: Schedule,
@@ -54,65 +68,92 @@ pub struct Files {
     /// When this began on the clock, and the updates of a cell before it.
     begun: Instant,
     updates: u64,
-    /// When the last checkpoint was saved, and when the series were last joined and what it cost \[s\]; `None` while they are
-    /// being joined.
+    /// Frames so far.
+    count: u64,
+    /// The step after which everything was shown; while instants within a step are being shown it is the one before.
+    shown: u64,
+    /// When the last checkpoint was ordered, what it cost the steps \[s\], whether it is still being written, and the pause
+    /// until the next.
     saved: Instant,
+    cost: f64,
+    saving: bool,
+    pause: f64,
+    /// When the series were last joined and what it cost \[s\]; `None` while they are
+    /// being joined.
     joined: Option<(Instant, f64)>,
 }
 
 impl Files {
-    /// Begins the files of `run` in `directory` with its state as the first frame; what an older run left there goes.
+    /// Begins the files of `run` in `folder` with its state as the first frame; what an earlier run left there is to be moved
+    /// before ([`Folder::clear`]).
     ///
     /// # Errors
     /// [`BeginError`] naming the file.
     pub fn begin(
-        directory: &Path,
+        folder: Folder,
         plan: &RunPlan,
+        origin: Origin,
         command: &str,
         run: &mut dyn Run,
     ) -> Result<Files, BeginError> {
-        remove_leftovers(directory)?;
-        // An older checkpoint would belong to other frames.
-        output::remove_if_there(&checkpoints::file_in(directory))?;
+        folder.sweep()?;
+        let directory = folder.path();
         let frames = Frames::create(&frames_in(directory), plan.output.precision, run.plane().series())?;
         let ledger = Ledger::create(&ledger_in(directory), run.plane().outlets())?;
-        let mut files = Self::over(directory, plan, command, run, frames, ledger)?;
+        let mut files = Self::over(folder, plan, origin, command, run, frames, ledger)?;
         files.frame(run)?;
         files.schedule.plan(run);
+        // From the first instant on a run that is killed goes on.
+        files.checkpoint(run, None)?;
         Ok(files)
     }
 
-    /// Takes up the files in `directory` at their checkpoint, and puts `run` where it was.
+    /// Takes up the files in `folder` at their checkpoint, and puts `run` where it was.
     ///
     /// # Errors
     /// [`BeginError`]; frames and ledger are then as the checkpoint needs them.
     pub fn resume(
-        directory: &Path,
+        folder: Folder,
         plan: &RunPlan,
+        origin: Origin,
         command: &str,
         run: &mut dyn Run,
     ) -> Result<Files, BeginError> {
-        remove_leftovers(directory)?;
+        folder.sweep()?;
+        let directory = folder.path();
         let refused = |problem: String| BeginError::Resume { directory: directory.to_owned(), problem };
         let saved = checkpoints::file_in(directory);
         if !saved.exists() {
-            return Err(refused(format!("there is no checkpoint {}", saved.display())));
+            let error = refused(format!("there is no checkpoint {}", saved.display()));
+            folder.abandon();
+            return Err(error);
         }
         run.stepper_mut().release_buffers();
-        let taken = checkpoints::read(&saved, plan, run)?;
-        let (mut frames, _torn) = Frames::open(&frames_in(directory))?;
-        let mut ledger = Ledger::open(&ledger_in(directory))?;
-        frames.truncate_to(taken.written[0])?;
-        ledger.truncate_to(taken.written[1])?;
+        let taken = checkpoints::read(&saved, &origin, run)?;
+        if let (Some(_), Some(summary)) = (taken.ended, ended(directory)?) {
+            return Err(BeginError::Ended { directory: directory.to_owned(), summary: Box::new(summary) });
+        }
+        let [frames, ledger] = [frames_in(directory), ledger_in(directory)];
+        for path in [&frames, &ledger] {
+            if !path.exists() {
+                let problem = format!("{} is gone, which the checkpoint counts on", path.display());
+                return Err(refused(problem));
+            }
+        }
+        let (mut frames, _torn) = Frames::open(&frames)?;
+        let mut ledger = Ledger::open(&ledger)?;
+        frames.truncate_to(taken.marks.frames)?;
+        ledger.truncate_to(taken.marks.ledger)?;
         run.restore(taken.saved).map_err(refused)?;
-        let mut files = Self::over(directory, plan, command, run, frames, ledger)?;
+        let mut files = Self::over(folder, plan, origin, command, run, frames, ledger)?;
         files.schedule.resume(taken.due);
         Ok(files)
     }
 
     fn over(
-        directory: &Path,
+        folder: Folder,
         plan: &RunPlan,
+        origin: Origin,
         command: &str,
         run: &dyn Run,
         frames: Frames,
@@ -121,19 +162,26 @@ impl Files {
         let now = Instant::now();
         let line = ledger.entries().last().map(|entry| entry.time);
         let written = [frames.times().last().copied(), line].map(|time| time.unwrap_or(f64::NEG_INFINITY));
-        let checkpoint = checkpoints::file_in(directory);
+        let checkpoint = checkpoints::file_in(folder.path());
+        let count = frames.times().len() as u64;
         let writer = Writer::start(frames, ledger, checkpoint, command.to_owned())
             .map_err(|error| BeginError::Thread(error.to_string()))?;
         Ok(Files {
-            directory: directory.to_owned(),
+            folder,
             plan: plan.clone(),
+            origin,
             command: command.to_owned(),
             writer,
             schedule: Schedule::new(plan.output.frames, run.plane()),
             written,
             begun: now,
             updates: run.stepper().updates(),
+            count,
+            shown: run.steps(),
             saved: now,
+            cost: 0.0,
+            saving: false,
+            pause: PAUSES[0],
             joined: Some((now, 0.0)),
         })
     }
@@ -157,6 +205,14 @@ impl Files {
 
     /// A frame of the series and its line in the ledger.
     fn frame(&mut self, run: &mut dyn Run) -> Result<(), output::Error> {
+        if self.count >= granflow_case::Frames::MOST {
+            let problem = format!(
+                "the run has written {} frames and would go on; start again with a larger output.every or output.steps",
+                self.count
+            );
+            return Err(output::Error::invalid(&frames_in(self.folder.path()), problem));
+        }
+        self.count += 1;
         let shown = &*run;
         self.writer.frame(run.time(), |field, from, values| shown.fill(field, from, values))?;
         self.written[0] = run.time();
@@ -176,7 +232,7 @@ impl Files {
             self.joined = Some((Instant::now(), cost));
         }
         if let Some((last, cost)) = self.joined
-            && last.elapsed().as_secs_f64() > (JOIN * cost).max(CHECKPOINT)
+            && last.elapsed().as_secs_f64() > (JOIN * cost).max(PAUSES[1])
         {
             let ending = Ending::of(self, run, StopReason::Interrupted);
             self.writer.join(ending)?;
@@ -192,49 +248,61 @@ impl Files {
             Due::Line => self.line(run)?,
             Due::Nothing => {}
         }
-        if self.saved.elapsed().as_secs_f64() > CHECKPOINT {
-            self.checkpoint(run, self.written)?;
+        self.shown = run.steps();
+        if let Some(beside) = self.writer.saved() {
+            self.cost += beside;
+            self.saving = false;
+        }
+        if !self.saving && self.saved.elapsed().as_secs_f64() > self.pause.max(CHECKPOINT * self.cost) {
+            self.pause = (2.0 * self.pause).min(PAUSES[1]);
+            self.checkpoint(run, None)?;
         }
         Ok(())
     }
 
-    /// Save what goes on from here. `written` are the times of the last frame and line that an unbroken run has too: the
-    /// frame at which an interrupted run ends goes when it is resumed.
-    fn checkpoint(&mut self, run: &dyn Run, written: [f64; 2]) -> Result<(), output::Error> {
-        self.writer.checkpoint(&checkpoints::of(run, &self.plan, self.schedule.next(), written))?;
+    /// Save what goes on from here, with every frame and line so far.
+    fn checkpoint(&mut self, run: &dyn Run, ended: Option<StopReason>) -> Result<(), output::Error> {
         self.saved = Instant::now();
+        self.writer.checkpoint(&checkpoints::of(run, &self.origin, self.schedule.next(), ended))?;
+        (self.cost, self.saving) = (self.saved.elapsed().as_secs_f64(), true);
         Ok(())
     }
 
     /// Write the last frame and everything that the case asks for. What is done with is given back on the way: to end takes
-    /// no more memory than to compute.
+    /// no more memory than to compute. A run that was interrupted within a step, between two instants of it, goes on from the
+    /// checkpoint before that step.
     ///
     /// # Errors
     /// [`FilesError`]; what was complete before stays complete.
     pub fn finish(mut self, mut run: Box<dyn Run>, reason: StopReason) -> Result<Finished, FilesError> {
-        let written = self.written;
-        if written[0] != run.time() {
-            self.frame(&mut *run)?;
+        if self.shown == run.steps() {
+            // Before the last frame: where an interrupted run ends an unbroken one has none.
+            self.checkpoint(&*run, Some(reason).filter(|reason| *reason != StopReason::Interrupted))?;
+            if self.written[0] != run.time() {
+                self.frame(&mut *run)?;
+            }
         }
-        self.checkpoint(&*run, written)?;
         let command = self.command.clone();
         let ending = Ending::last(&self, run, reason);
         let (frames, ledger) = self.writer.end()?;
-        let finished = ending.finished(frames, ledger.into_entries());
+        let finished = ending.finished(Some(self.folder), frames, ledger.into_entries());
         finished.write(&command)?;
         Ok(finished)
     }
 
-    /// Save the frames before a step that failed; the state after it is worth nothing.
+    /// Save the frames before a step that failed, and say in `summary.json` that and why it did; the state after it is worth
+    /// nothing.
     ///
     /// # Errors
     /// [`output::Error`] naming the file.
-    pub fn give_up(self, run: Box<dyn Run>) -> Result<Finished, output::Error> {
+    pub fn give_up(self, run: Box<dyn Run>, failure: &str) -> Result<Finished, output::Error> {
         let command = self.command.clone();
-        let ending = Ending::last(&self, run, StopReason::Interrupted);
+        let mut ending = Ending::last(&self, run, StopReason::Failed);
+        ending.explain(failure);
         let (frames, ledger) = self.writer.end()?;
-        let finished = ending.finished(frames, ledger.into_entries());
+        let finished = ending.finished(Some(self.folder), frames, ledger.into_entries());
         finished.write_result(&command)?;
+        finished.summary.write(&finished.directory.join("summary.json"))?;
         Ok(finished)
     }
 }
@@ -251,11 +319,13 @@ impl Sink for Files {
     }
 }
 
-fn remove_leftovers(directory: &Path) -> Result<(), output::Error> {
-    for folder in [directory.to_owned(), directory.join("checkpoint")] {
-        output::remove_leftovers(&folder)?;
+/// How the run in a folder ended, where all its files are made and its frames are not kept any more.
+fn ended(directory: &Path) -> Result<Option<Summary>, output::Error> {
+    let (summary, result) = (directory.join("summary.json"), directory.join("result.nc"));
+    if frames_in(directory).exists() || !summary.exists() || !result.exists() {
+        return Ok(None);
     }
-    Ok(())
+    Summary::read(&summary).map(Some)
 }
 
 fn frames_in(directory: &Path) -> PathBuf {

@@ -116,6 +116,12 @@ impl Part {
 }
 
 impl Sources {
+    /// Bytes that the places of its cells take.
+    #[must_use]
+    pub fn bytes(&self) -> usize {
+        self.parts.iter().map(|part| size_of_val(part.cells.as_slice())).sum()
+    }
+
     /// The rate f of every cell at time t, x fastest; 0 off the table.
     #[must_use]
     pub fn rate(&self, t: f64) -> Vec<f64> {

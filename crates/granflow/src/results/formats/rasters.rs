@@ -1,6 +1,7 @@
 //! `rasters/*.tif`: the summary maps for a geographic information system.
 
 use crate::model::{At, Kind, Quantity};
+use crate::output::{settle, temporary};
 use crate::raster::RasterError;
 use crate::results::Finished;
 use crate::results::format::Format;
@@ -23,8 +24,13 @@ fn write(run: &Finished) -> Result<Vec<PathBuf>, RasterError> {
     let write = |quantity: &&Quantity| -> Option<Result<PathBuf, RasterError>> {
         let map = run.map(quantity.name)?;
         let value = |cell: usize| if bed.values[cell].is_nan() { f64::NAN } else { map[cell] };
-        let path = folder.join(format!("{}.tif", quantity.name));
-        Some(bed.write_values(&path, value).map(|()| path))
+        let (part, path) = (temporary(&folder, quantity.name), folder.join(format!("{}.tif", quantity.name)));
+        let lasting = || -> Result<PathBuf, RasterError> {
+            bed.write_values(&part, value)?;
+            settle(&part, &path).map_err(|source| RasterError::Io { path: path.clone(), source })?;
+            Ok(path)
+        };
+        Some(lasting())
     };
     let maps: Vec<_> = run.plane.model().of_kind(Kind::Map).filter(|map| map.at == At::Cells).collect();
     maps.par_iter().filter_map(write).collect()

@@ -2,6 +2,7 @@
 
 use super::Files;
 use crate::model::Plane;
+use crate::output::folder::Folder;
 use crate::output::frames::Frames;
 use crate::output::summary::{StopReason, Summary};
 use crate::results::Finished;
@@ -44,7 +45,7 @@ impl Ending {
     fn with(files: &Files, plane: Plane, maps: Maps, mut summary: Summary) -> Ending {
         count(&maps, &mut summary);
         Ending {
-            directory: files.directory.clone(),
+            directory: files.folder.path().to_owned(),
             files: files.plan.output.files.clone(),
             case: files.plan.resolved(),
             case_text: files.plan.text(),
@@ -54,12 +55,17 @@ impl Ending {
         }
     }
 
-    /// Put it together.
-    pub fn finished(self, frames: Frames, ledger: Vec<Entry>) -> Finished {
+    /// Say in the summary why the run failed.
+    pub fn explain(&mut self, failure: &str) {
+        self.summary.extra.insert("failure".to_owned(), failure.into());
+    }
+
+    /// Put it together; `folder` keeps its lock for as long as files are made.
+    pub fn finished(self, folder: Option<Folder>, frames: Frames, ledger: Vec<Entry>) -> Finished {
         let Ending { directory, files, case, case_text, plane, mut maps, mut summary } = self;
         plane.derive(&mut maps, &mut summary);
         summary.warnings = (plane.model().warnings)(plane.model(), &summary);
-        Finished { directory, files, case, case_text, plane, frames, ledger, maps, summary }
+        Finished { directory, folder, files, case, case_text, plane, frames, ledger, maps, summary }
     }
 }
 

@@ -5,7 +5,7 @@
 //! steps wait only while all are still to be written.
 
 use super::ending::Ending;
-use crate::output::checkpoint::{self, Checkpoint, Numbers};
+use crate::output::checkpoint::{self, Checkpoint, Marks, Numbers};
 use crate::output::frames::Frames;
 use crate::output::ledger::{Entry, Ledger};
 use crate::output::{Error, Precision};
@@ -40,6 +40,7 @@ pub(super) struct Writer {
     written: Receiver<Vec<u8>>,
     made: usize,
     joined: Receiver<f64>,
+    saved: Receiver<f64>,
     thread: Option<JoinHandle<Result<(Frames, Ledger), Error>>>,
 }
 
@@ -49,12 +50,13 @@ impl Writer {
         let (orders, given) = sync_channel(PIECES);
         let (free, written) = channel();
         let (costs, joined) = channel();
+        let (save_costs, saved) = channel();
         let precision = frames.precision();
         let lengths = frames.fields().iter().map(|field| field.length).collect();
-        let desk = Desk { frames, ledger, checkpoint, command, given, free, costs };
+        let desk = Desk { frames, ledger, checkpoint, command, given, free, costs, save_costs };
         let thread = Builder::new().name("granflow-writer".to_owned()).spawn(|| desk.work())?;
         let (orders, thread) = (Some(orders), Some(thread));
-        Ok(Writer { precision, lengths, orders, written, made: 0, joined, thread })
+        Ok(Writer { precision, lengths, orders, written, made: 0, joined, saved, thread })
     }
 
     /// Append a line to the ledger.
@@ -86,9 +88,9 @@ impl Writer {
     pub fn checkpoint(&mut self, checkpoint: &Checkpoint) -> Result<(), Error> {
         let arrays = checkpoint.arrays.iter().map(|(_, values)| values);
         let parts: Vec<Numbers> = arrays.clone().flat_map(|values| values.chunks(NUMBERS)).collect();
-        let numbers: usize = arrays.map(Numbers::len).sum();
+        let bytes = arrays.map(Numbers::bytes).sum();
         let head = checkpoint.head();
-        self.send(Order::Checkpoint { head, bytes: numbers * Precision::F64.width() })?;
+        self.send(Order::Checkpoint { head, bytes })?;
         self.pieces(&parts, Numbers::encode)
     }
 
@@ -100,6 +102,11 @@ impl Writer {
     /// What the last [`Writer::join`] cost \[s\], once, when it is done.
     pub fn joined(&self) -> Option<f64> {
         self.joined.try_recv().ok()
+    }
+
+    /// What the last [`Writer::checkpoint`] cost \[s\] beside the steps, once, when it is on disk.
+    pub fn saved(&self) -> Option<f64> {
+        self.saved.try_recv().ok()
     }
 
     /// Has everything gone well so far?
@@ -186,23 +193,29 @@ struct Desk {
     given: Receiver<Order>,
     free: Sender<Vec<u8>>,
     costs: Sender<f64>,
+    save_costs: Sender<f64>,
 }
 
 impl Desk {
     fn work(self) -> Result<(Frames, Ledger), Error> {
-        let Desk { mut frames, mut ledger, checkpoint, command, given, free, costs } = self;
+        let Desk { mut frames, mut ledger, checkpoint, command, given, free, costs, save_costs } = self;
         while let Ok(order) = given.recv() {
             let pass = |bytes, out: &mut dyn Write| pass(&given, &free, bytes, out);
             match order {
                 Order::Line(entry) => ledger.append(entry)?,
                 Order::Frame { time, bytes } => frames.append_from(time, |out| pass(bytes, out))?,
                 Order::Checkpoint { head, bytes } => {
+                    let begin = Instant::now();
                     ledger.sync()?;
-                    checkpoint::write_from(&checkpoint, &head, |out| pass(bytes, out))?;
+                    let marks = Marks { frames: frames.mark(), ledger: ledger.mark() };
+                    checkpoint::write_from(&checkpoint, &head, marks, |out| pass(bytes, out))?;
+                    let _ = save_costs.send(begin.elapsed().as_secs_f64()); // nobody asks at the end of a run
                 }
                 Order::Join(ending) => {
                     let begin = Instant::now();
-                    ending.finished(frames.again()?, ledger.entries().to_vec()).write_result(&command)?;
+                    ending
+                        .finished(None, frames.again()?, ledger.entries().to_vec())
+                        .write_result(&command)?;
                     let _ = costs.send(begin.elapsed().as_secs_f64()); // nobody asks at the end of a run
                 }
                 Order::Piece(_) => unreachable!("a piece belongs to a frame or a checkpoint"),

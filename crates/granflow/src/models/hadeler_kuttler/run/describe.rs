@@ -1,8 +1,10 @@
 //! What a growing sandpile would compute: table, sources, layers at the start.
 
-use crate::describe::{Line, axis, case, effort, range};
+use super::start::BESIDE;
+use crate::describe::{Line, axis, case, effort, memory, range, written};
+use crate::memory::Size;
 use granflow_case::sandpile::{Edge, Pile, Plan, Poured, SchemeName, TablePlan};
-use granflow_case::{Axis, RunPlan, Until};
+use granflow_case::{Axis, Frames, RunPlan, Until};
 use granflow_engine::simulation::Simulation;
 use granflow_model::hadeler_kuttler::scheme::HadelerKuttler;
 
@@ -27,6 +29,13 @@ pub(crate) fn lines(run: &RunPlan, plan: &Plan) -> Vec<Line> {
     lines
 }
 
+/// Bytes of the two layers in a cell, and of what the equilibrium takes beside them while it is found.
+const STATE: usize = 16;
+const EQUILIBRIUM: usize = 100;
+/// What pictures of a table take at once \[bytes\], and numbers that figures of a line hold for each cell and frame: measured.
+const PICTURES: f64 = 20e6;
+const PROFILES: f64 = 5.0;
+
 fn on<const D: usize>(run: &RunPlan, Pile { table: plan, sources }: &Pile<D>, axes: &[&Axis]) -> Vec<Line> {
     let cell: f64 = axes.iter().map(|axis| axis.width()).product();
     let count = plan.table.count();
@@ -44,15 +53,39 @@ fn on<const D: usize>(run: &RunPlan, Pile { table: plan, sources }: &Pile<D>, ax
     }
     let [u, v] = [&plan.standing, &plan.rolling].map(|layer| range(layer).1);
     lines.push(("layers", format!("at the start standing up to {u}, rolling up to {v}")));
+    let nodes: usize = plan.nodes.counts().iter().product();
+    let size = size::<D>(run, nodes, sources.bytes());
     if run.ends.until == Some(Until::Equilibrium) {
+        lines.extend([("memory", memory(run, &size)), ("writes", written(run, &size))]);
         lines.push(("steps", "none".to_owned()));
     } else {
         // The paper's bound along each axis, dt max(1, max v)/h: slopes are at most 1.
         let rate = axes.iter().map(|axis| v.max(1.0) / axis.width()).sum();
-        let nodes: usize = plan.nodes.counts().iter().product();
-        lines.extend(effort(run, nodes * Simulation::<D, HadelerKuttler>::bytes_per_cell(false), rate));
+        lines.extend(effort(run, &size, rate));
     }
     lines
+}
+
+/// How large a run is whose sources hold so many bytes.
+fn size<const D: usize>(run: &RunPlan, nodes: usize, sources: usize) -> Size {
+    let simulation = Simulation::<D, HadelerKuttler>::bytes_per_cell(false);
+    // Schemes of two stages keep the state before a step that an instant of the frames lies in.
+    let instants = matches!(run.output.frames, Frames::Every(_) | Frames::Ends);
+    let before = if instants && run.scheme != SchemeName::FirstOrder.as_str() { STATE } else { 0 };
+    let direct = run.ends.until == Some(Until::Equilibrium);
+    let beside = BESIDE + if direct { EQUILIBRIUM } else { before };
+    let drawn = if D == 1 { PROFILES } else { PICTURES };
+    let bytes = (simulation + beside) as f64 + sources as f64 / nodes as f64;
+    Size {
+        cells: nodes,
+        line: D == 1,
+        setup: bytes,
+        run: bytes,
+        saved: STATE as f64,
+        maps: 3,
+        frame: 2 * nodes,
+        drawn,
+    }
 }
 
 /// How many edges of each kind there are, open and walls.

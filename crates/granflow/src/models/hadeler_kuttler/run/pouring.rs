@@ -8,17 +8,23 @@ use granflow_engine::simulation::Simulation;
 use granflow_model::hadeler_kuttler::scheme::HadelerKuttler;
 use std::sync::Arc;
 
-/// A table with what is poured on it, and until when that flows as it does now.
+/// A table with what is poured on it, since when that flows as it does now, and until when.
 pub(crate) struct Pouring<const D: usize> {
     sand: Sand<D>,
     table: Arc<dyn Domain>,
     scheme: &'static str,
+    poured_at: f64,
     changes_at: f64,
 }
 
 impl<const D: usize> Pouring<D> {
     pub fn new(sand: Sand<D>, table: Arc<dyn Domain>, scheme: &'static str) -> Self {
-        Pouring { sand, table, scheme, changes_at: f64::NEG_INFINITY }
+        Pouring { sand, table, scheme, poured_at: f64::NEG_INFINITY, changes_at: f64::NEG_INFINITY }
+    }
+    /// Let the sources flow as they do at `time`.
+    fn pour(&mut self, simulation: &mut Simulation<D, HadelerKuttler>, time: f64) {
+        self.sand.pour(simulation, time);
+        self.poured_at = time;
     }
     /// The first time after `time` at which a source begins or ends.
     fn change_after(&self, time: f64) -> f64 {
@@ -52,19 +58,28 @@ impl<const D: usize> Physics<D> for Pouring<D> {
         if self.sand.sources.is_moving(time) {
             let next = self.change_after(time);
             let middle = if adaptive { time + half.min(0.5 * (next - time)) } else { time + half };
-            self.sand.pour(simulation, middle);
+            self.pour(simulation, middle);
             return next;
         }
         let now = if adaptive { time } else { time + half };
         if now >= self.changes_at && self.sand.equilibrium.is_none() {
-            self.sand.pour(simulation, now);
+            self.pour(simulation, now);
             self.changes_at = self.change_after(now);
         }
         self.changes_at
     }
 
-    fn restored(&mut self) {
-        self.changes_at = f64::NEG_INFINITY;
+    fn save(&self) -> Vec<f64> {
+        vec![self.poured_at, self.changes_at]
+    }
+    fn restore(&mut self, simulation: &mut Simulation<D, HadelerKuttler>, saved: &[f64]) -> bool {
+        let &[poured_at, changes_at] = saved else { return false };
+        if self.sand.equilibrium.is_none() {
+            // Before its first step a pile has the sources of time 0.
+            self.pour(simulation, poured_at.max(0.0));
+        }
+        (self.poured_at, self.changes_at) = (poured_at, changes_at);
+        true
     }
     fn is_settled(&self, time: f64) -> bool {
         let sources = &self.sand.sources;
@@ -79,8 +94,8 @@ impl<const D: usize> Physics<D> for Pouring<D> {
         let length = if field == 0 { table.nodes() } else { table.inside.len() };
         table.blank_part(length, from, values);
     }
-    fn is_steady(&self, simulation: &Simulation<D, HadelerKuttler>, rate: f64) -> bool {
-        self.is_settled(simulation.time()) && simulation.drift().iter().all(|drift| *drift < rate)
+    fn is_steady(&self, simulation: &Simulation<D, HadelerKuttler>, drift: &[f64], rate: f64) -> bool {
+        self.is_settled(simulation.time()) && drift.iter().all(|drift| *drift < rate)
     }
     fn is_equilibrium(&self) -> bool {
         self.sand.equilibrium.is_some()
@@ -93,12 +108,12 @@ impl<const D: usize> Physics<D> for Pouring<D> {
         }
         maps
     }
-    fn numbers(&self, simulation: &Simulation<D, HadelerKuttler>, record: &Record) -> Numbers {
+    fn numbers(&self, simulation: &Simulation<D, HadelerKuttler>, drift: &[f64], record: &Record) -> Numbers {
         let totals = simulation.totals();
         let standing = simulation.collect(|cell: &CellOf<D, HadelerKuttler>| cell.state.u);
         let [u, v] = match &self.sand.equilibrium {
             Some(_) => self.sand.residual(simulation),
-            None => [simulation.drift()[0], simulation.drift()[1]],
+            None => [drift[0], drift[1]],
         };
         // The largest "speed" of this scheme is the thickness of the rolling layer: its speed is the slope, at most 1.
         let mut numbers: Numbers = [

@@ -3,11 +3,15 @@
 use super::pouring::Pouring;
 use super::sand::Sand;
 use crate::StartError;
+use crate::memory::fits;
 use crate::run::{Run, Simulated, step_size};
 use granflow_case::sandpile::{Pile, Plan, Poured, SchemeName};
 use granflow_case::{Grid, RunPlan};
-use granflow_engine::simulation::{BuildError, StepSize};
+use granflow_engine::simulation::{BuildError, Simulation, StepSize};
 use granflow_model::hadeler_kuttler::scheme::{FIRST_ORDER, HadelerKuttler, SECOND_ORDER, Slopes};
+
+/// Bytes for each cell that a run holds beside its simulation: table, height, layers at the start, shares of the source.
+pub(super) const BESIDE: usize = 68;
 
 /// The run of a case of growing sandpiles.
 pub(crate) fn start(run: &RunPlan, plan: Plan) -> Result<Box<dyn Run>, StartError> {
@@ -29,6 +33,8 @@ fn on<const D: usize>(
     pile: Pile<D>,
     scheme: HadelerKuttler,
 ) -> Result<Box<dyn Run>, StartError> {
+    let cells = grid.cells().iter().product();
+    fits(cells, Simulation::<D, HadelerKuttler>::bytes_per_cell(false) + BESIDE)?;
     let sand = Sand::new(run, grid, pile)?;
     // At its equilibrium a pile is the first-order scheme's.
     let scheme = if sand.equilibrium.is_some() { FIRST_ORDER } else { scheme };

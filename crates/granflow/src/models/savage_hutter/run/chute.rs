@@ -3,6 +3,7 @@
 use super::super::ChuteDomain;
 use super::flowing::Flowing;
 use crate::StartError;
+use crate::memory::fits;
 use crate::model::Plane;
 use crate::run::{Run, Simulated, step_size};
 use granflow_case::avalanche::{Method, SchemeName};
@@ -50,6 +51,7 @@ where
     S: Kernel<D, State = Flow<D, f64>, Ground = Chute<D, f64>> + 'static,
 {
     let (grid, grounds, initial, film) = (grid::<D>(&plan), columns(&plan), plan.initial, plan.scheme.film);
+    fits(grid.cells.iter().product(), Simulation::<D, S>::bytes_per_cell(false))?;
     let columns = grid.cells[0];
     let plane = Plane::of(&grid, Arc::new(ChuteDomain));
     // Both own what they read: it is given back once the simulation is made.

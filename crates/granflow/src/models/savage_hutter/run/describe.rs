@@ -5,12 +5,14 @@ use super::chute;
 use super::terrain::{self, Loaded};
 use crate::StartError;
 use crate::describe::{Line, axis, case, effort, range};
+use crate::memory::Size;
+use crate::model::{At, Kind};
 use crate::run::Run;
 use granflow_case::avalanche::Material;
 use granflow_case::chute::Plan as OnChute;
 #[cfg(feature = "geo")]
 use granflow_case::terrain::{Plan as OnTerrain, TerrainScheme};
-use granflow_case::{Axis, RunPlan, Side};
+use granflow_case::{Axis, Frames, RunPlan, Side};
 #[cfg(feature = "geo")]
 use granflow_geo::raster::Crs;
 #[cfg(feature = "geo")]
@@ -30,7 +32,7 @@ pub(crate) fn chute(run: &RunPlan, plan: OnChute) -> Result<Vec<Line>, StartErro
     let mut lines = case(run, material(&plan.material), &format!("{order}, film {:e}, ", plan.scheme.film));
     lines.push(threshold(run, ""));
     lines.extend(grid(&plan));
-    lines.extend(start(run, &mut *chute::start(run, plan)?));
+    lines.extend(start(run, &mut *chute::start(run, plan)?, READ[0], PICTURES[0]));
     Ok(lines)
 }
 
@@ -46,23 +48,49 @@ pub(crate) fn terrain(run: &RunPlan, plan: &OnTerrain) -> Result<Vec<Line>, Star
     let loaded = terrain::load(run, plan)?;
     lines.extend(mountain(&loaded, plan.material.gravity));
     let remarks: Vec<Line> = loaded.remarks.iter().map(|one| (one.kind(), one.text().to_owned())).collect();
-    lines.extend(start(run, &mut *terrain::simulate(run, plan, loaded)?));
+    lines.extend(start(run, &mut *terrain::simulate(run, plan, loaded)?, READ[1], PICTURES[1]));
     lines.extend(remarks);
     Ok(lines)
 }
 
-/// How the state at the start would move.
-fn start(run: &RunPlan, start: &mut dyn Run) -> Vec<Line> {
+/// Bytes for each cell of what is read before a simulation is made: thickness and velocity of a chute, elevation of a mountain.
+const READ: [f64; 2] = [24.0, 8.0];
+/// What pictures of a plane and of a mountain take at once \[bytes\], and numbers that figures of a line hold for each cell and
+/// frame: measured.
+const PICTURES: [f64; 2] = [20e6, 45e6];
+const PROFILES: f64 = 10.0;
+
+/// How the state at the start would move; `beside` are the bytes for each cell that set it up,
+/// `pictures` those of what is drawn.
+fn start(run: &RunPlan, start: &mut dyn Run, beside: f64, pictures: f64) -> Vec<Line> {
     let (totals, rate) = (start.totals(), start.stepper().rate());
     let cells: usize = start.stepper().cells().iter().product();
-    let bytes = cells * start.stepper().bytes_per_cell(start.has_speed());
+    let instants = matches!(run.output.frames, Frames::Every(_) | Frames::Ends);
+    let bytes = start.bytes_per_cell(instants) as f64;
+    let plane = start.plane();
+    let line = plane.dimensions() == 1;
+    let maps = plane.model().of_kind(Kind::Map).filter(|map| map.at == At::Cells).count();
+    // Components of the state, and four maps in single precision.
+    let saved = 8.0 * start.stepper().components() as f64 + 16.0;
+    let drawn = if line { PROFILES } else { pictures };
+    let frame = plane.series().iter().map(|field| field.length).sum();
+    let size = Size {
+        cells,
+        line,
+        setup: start.stepper().bytes_per_cell(false) as f64 + beside,
+        run: bytes,
+        saved,
+        maps,
+        frame,
+        drawn,
+    };
     let pull = start.stepper_mut().yield_ratios().into_iter().fold(0.0, f64::max);
     let verdict = if pull > 1.0 { "it will start" } else { "it rests" };
     let mut lines = vec![
         ("mass", format!("{:.6} in {} cells", totals.volume, totals.wet)),
         ("pull", format!("at most {pull:.6} of what friction holds: {verdict}")),
     ];
-    lines.extend(effort(run, bytes, rate));
+    lines.extend(effort(run, &size, rate));
     lines
 }
 

@@ -92,7 +92,7 @@ where
         }
         vec![("deposit", deposit), ("yield_margin", margin)]
     }
-    fn numbers(&self, simulation: &Simulation<D, S>, record: &Record) -> Numbers {
+    fn numbers(&self, simulation: &Simulation<D, S>, _drift: &[f64], record: &Record) -> Numbers {
         let totals = simulation.totals();
         let share = if record.initial == 0.0 { 0.0 } else { totals.film / record.initial };
         let mut numbers = vec![

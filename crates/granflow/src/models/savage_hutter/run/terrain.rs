@@ -3,6 +3,7 @@
 use super::super::TerrainDomain;
 use super::flowing::Flowing;
 use crate::StartError;
+use crate::memory::fits;
 use crate::model::Plane;
 use crate::run::{Run, Simulated, step_size};
 use granflow_case::RunPlan;
@@ -97,6 +98,7 @@ fn begin<S>(
 where
     S: Kernel<2, State = Flow<2, f64>, Ground = ground::Terrain<2, f64>, Forcing = ()> + 'static,
 {
+    fits(grid.cells.iter().product(), Simulation::<2, S>::bytes_per_cell(false))?;
     let simulation = Simulation::new(scheme, grid, step_size(run), ground, state)?;
     let physics = Flowing::new(run.scheme, film, true).with_threshold(run.output.threshold);
     Ok(Box::new(Simulated::new(simulation, physics, plane)))

@@ -1,4 +1,5 @@
 use super::*;
+use crate::output::checkpoint::Origin;
 use crate::output::frames::Field;
 use std::borrow::Cow;
 use std::fs;
@@ -40,7 +41,8 @@ fn saved<'a>(step: u64, state: &'a [f64]) -> Checkpoint<'a> {
         ("state_0".to_owned(), numbers),
         ("map".to_owned(), Numbers::Single(Cow::Borrowed(&[0.1, 7.0]))),
     ];
-    Checkpoint { case: "case".to_owned(), step, time: 0.5, scalars: vec![("peak".to_owned(), 0.1)], arrays }
+    let scalars = vec![("peak".to_owned(), 0.1)];
+    Checkpoint { origin: Origin::default(), ended: None, step, time: 0.5, scalars, arrays }
 }
 
 #[test]
@@ -61,7 +63,8 @@ fn the_files_are_those_that_would_be_written_at_once() {
                 .collect();
             frames.append(time, &fields.iter().map(Vec::as_slice).collect::<Vec<_>>()).unwrap();
             ledger.append(entry(step)).unwrap();
-            saved(step, &state).write(&at_once.path().join("state.bin")).unwrap();
+            let marks = Marks { frames: frames.mark(), ledger: ledger.mark() };
+            saved(step, &state).write(&at_once.path().join("state.bin"), marks).unwrap();
         }
         let (kept, lines) = writer.end().unwrap();
         assert_eq!((kept.times(), lines.entries()), (frames.times(), ledger.entries()));

@@ -1,0 +1,185 @@
+//! The folder of a run's results: one run at a time, no file of an earlier one among its own.
+
+use super::{Error, remove_if_there, remove_leftovers};
+use std::fs::{self, File, OpenOptions, TryLockError};
+use std::io::{self, Read, Seek, Write};
+use std::path::{Path, PathBuf};
+
+/// What a run leaves; an earlier run was here if one of the first four is there.
+const FILES: [&str; 13] = [
+    "checkpoint/state.bin",
+    "checkpoint/frames.bin",
+    "summary.json",
+    "result.nc",
+    "mass.csv",
+    "outlines.geojson",
+    "report.html",
+    "profiles.csv",
+    "profiles_node.csv",
+    "maps.csv",
+    "maps_node.csv",
+    "animation.png",
+    "result.pvd",
+];
+const SIGNS: usize = 4;
+const FOLDERS: [&str; 3] = ["figures", "rasters", "vtk"];
+/// Where the files of an earlier run go.
+const ASIDE: &str = "previous";
+
+/// The folder, locked for as long as this lives; the system drops the lock with the process, however that ends.
+#[derive(Debug)]
+pub struct Folder {
+    path: PathBuf,
+    /// Folders that were made for this, the outer ones first.
+    made: Vec<PathBuf>,
+    _lock: File,
+}
+
+impl Folder {
+    /// Makes the folder if it is not there, and takes its lock, `checkpoint/lock`.
+    ///
+    /// # Errors
+    /// [`Error::Io`]; [`Error::Busy`] if another run holds the lock.
+    pub fn take(path: &Path) -> Result<Folder, Error> {
+        if path.exists() && !path.is_dir() {
+            return Err(Error::invalid(path, "it is a file; name a folder with --out"));
+        }
+        let inner = path.join("checkpoint");
+        let mut made: Vec<PathBuf> = inner
+            .ancestors()
+            .take_while(|own| !own.as_os_str().is_empty() && !own.exists())
+            .map(Path::to_owned)
+            .collect();
+        made.reverse();
+        fs::create_dir_all(&inner).map_err(Error::io(path, "make the folder"))?;
+        let name = inner.join("lock");
+        let refused = || Error::io(&name, "lock");
+        let open = OpenOptions::new().read(true).write(true).create(true).truncate(false).open(&name);
+        let mut lock = open.map_err(refused())?;
+        match lock.try_lock() {
+            Ok(()) => {}
+            Err(TryLockError::WouldBlock) => {
+                let mut holder = String::new();
+                let _ = lock.read_to_string(&mut holder); // it only makes the message longer
+                return Err(Error::Busy { path: path.to_owned(), holder: holder.trim().to_owned() });
+            }
+            // A file system without locks is used as before there were any.
+            Err(TryLockError::Error(error)) if error.kind() == io::ErrorKind::Unsupported => {}
+            Err(TryLockError::Error(error)) => return Err(refused()(error)),
+        }
+        let note = |lock: &mut File| {
+            lock.set_len(0)?;
+            lock.rewind()?;
+            writeln!(lock, "process {}", std::process::id())
+        };
+        note(&mut lock).map_err(refused())?;
+        Ok(Folder { path: path.to_owned(), made, _lock: lock })
+    }
+
+    /// Its path.
+    #[must_use]
+    pub fn path(&self) -> &Path {
+        &self.path
+    }
+
+    /// Removes the temporary files that killed runs left.
+    ///
+    /// # Errors
+    /// [`Error::Io`].
+    pub fn sweep(&self) -> Result<(), Error> {
+        for folder in ["", "checkpoint"].iter().chain(&FOLDERS) {
+            remove_leftovers(&self.path.join(folder))?;
+        }
+        Ok(())
+    }
+
+    /// Moves what an earlier run left into the folder `previous`, in place of what was moved there before; returns that
+    /// folder if there was anything.
+    ///
+    /// # Errors
+    /// [`Error::Io`] naming the file that cannot be moved.
+    pub fn clear(&self) -> Result<Option<PathBuf>, Error> {
+        if !FILES[..SIGNS].iter().any(|name| self.path.join(name).exists()) {
+            return Ok(None);
+        }
+        let aside = self.path.join(ASIDE);
+        for name in FILES {
+            remove_if_there(&aside.join(name))?;
+        }
+        for name in FOLDERS.map(|name| aside.join(name)) {
+            match fs::remove_dir_all(&name) {
+                Err(absent) if absent.kind() == io::ErrorKind::NotFound => {}
+                done => done.map_err(Error::io(&name, "remove"))?,
+            }
+        }
+        fs::create_dir_all(aside.join("checkpoint")).map_err(Error::io(&aside, "make the folder"))?;
+        for name in FILES.iter().chain(&FOLDERS) {
+            let here = self.path.join(name);
+            if here.exists() {
+                fs::rename(&here, aside.join(name)).map_err(Error::io(&here, "move"))?;
+            }
+        }
+        Ok(Some(aside))
+    }
+
+    /// Removes what [`Folder::take`] made, for a run that could not begin.
+    pub fn abandon(self) {
+        if !self.made.is_empty() {
+            let _ = fs::remove_file(self.path.join("checkpoint/lock"));
+            for folder in self.made.iter().rev() {
+                let _ = fs::remove_dir(folder); // one that is no longer empty stays
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_second_run_is_refused_until_the_first_has_ended() {
+        let outside = tempfile::tempdir().unwrap();
+        let path = outside.path().join("deep/out");
+        let first = Folder::take(&path).unwrap();
+        let message = Folder::take(&path).unwrap_err().to_string();
+        for part in ["out", &std::process::id().to_string(), "--out"] {
+            assert!(message.contains(part), "{message}");
+        }
+        drop(first);
+        Folder::take(&path).unwrap().abandon();
+        assert!(path.exists(), "it was there before");
+        let other = outside.path().join("new/out");
+        Folder::take(&other).unwrap().abandon();
+        assert!(!outside.path().join("new").exists());
+        fs::write(outside.path().join("file"), "x").unwrap();
+        assert!(Folder::take(&outside.path().join("file")).unwrap_err().to_string().contains("it is a file"));
+    }
+
+    #[test]
+    fn an_earlier_run_is_moved_aside_and_other_files_stay() {
+        let outside = tempfile::tempdir().unwrap();
+        let folder = Folder::take(outside.path()).unwrap();
+        let at = |name: &str| outside.path().join(name);
+        let write = |name: &str, text: &str| {
+            fs::create_dir_all(at(name).parent().unwrap()).unwrap();
+            fs::write(at(name), text).unwrap();
+        };
+        write("figures/own.png", "x");
+        write("maps.csv", "x");
+        assert_eq!(folder.clear().unwrap(), None, "nothing says that a run was here");
+        for run in ["first", "second"] {
+            write("summary.json", run);
+            write("notes.txt", run);
+            write("checkpoint/state.bin", run);
+            write(&format!("figures/{run}.png"), run);
+            assert_eq!(folder.clear().unwrap(), Some(at("previous")));
+            assert_eq!(fs::read_to_string(at("previous/summary.json")).unwrap(), run);
+            assert_eq!(fs::read_to_string(at("previous/checkpoint/state.bin")).unwrap(), run);
+            assert!(at(&format!("previous/figures/{run}.png")).exists() && !at("figures").exists());
+            assert_eq!(fs::read_to_string(at("notes.txt")).unwrap(), run);
+        }
+        assert!(!at("previous/figures/first.png").exists());
+        assert!(Folder::take(outside.path()).is_err(), "the lock stays where it is");
+    }
+}

@@ -1,0 +1,97 @@
+//! What the files that a case names hold, so that a run does not go on with others than it began with.
+
+use super::Error;
+use serde::{Deserialize, Serialize};
+use std::fs::File;
+use std::io::Read;
+use std::path::{Path, PathBuf};
+
+/// A file that a run was made of.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Input {
+    /// Its name, as the case writes it.
+    pub name: String,
+    /// Its length.
+    pub bytes: u64,
+    /// The CRC-32 of its content.
+    pub crc: u32,
+}
+
+/// Endings of the files that are read with another of the same name: projection, attributes, index, code page, place.
+const BESIDE: [&str; 10] = ["prj", "PRJ", "dbf", "DBF", "shx", "SHX", "cpg", "CPG", "tfw", "TFW"];
+
+/// The files at `paths` and those that are read with them; `name` says how the case writes a path.
+///
+/// # Errors
+/// [`Error::Io`] naming the file that cannot be read.
+pub fn inputs(paths: &[PathBuf], name: impl Fn(&Path) -> PathBuf) -> Result<Vec<Input>, Error> {
+    let beside = |path: &PathBuf| BESIDE.map(|ending| path.with_extension(ending));
+    let mut all: Vec<PathBuf> = paths.iter().flat_map(beside).filter(|path| path.is_file()).collect();
+    all.extend_from_slice(paths);
+    all.sort();
+    all.dedup();
+    all.iter().map(|path| input(path, &name(path))).collect()
+}
+
+fn input(path: &Path, name: &Path) -> Result<Input, Error> {
+    let mut file = File::open(path).map_err(Error::io(path, "read"))?;
+    let (mut crc, mut bytes, mut part) = (crc32fast::Hasher::new(), 0, vec![0; 1 << 18]);
+    loop {
+        let read = file.read(&mut part).map_err(Error::io(path, "read"))?;
+        if read == 0 {
+            return Ok(Input { name: name.to_string_lossy().into_owned(), bytes, crc: crc.finalize() });
+        }
+        crc.update(&part[..read]);
+        bytes += read as u64;
+    }
+}
+
+/// The first difference between the inputs of a checkpoint and those of now, in words.
+pub(super) fn difference(then: &[Input], now: &[Input]) -> Option<String> {
+    let find = |list: &[Input], name: &str| list.iter().find(|one| one.name == name).cloned();
+    let changed = then.iter().find_map(|old| match find(now, &old.name) {
+        None => Some(format!("the run began with {}, which is not there any more", old.name)),
+        Some(new) if new != *old => {
+            let Input { name, bytes, .. } = old;
+            Some(format!("{name} is not what the run began with ({bytes} bytes then, {} now)", new.bytes))
+        }
+        Some(_) => None,
+    });
+    let added = || {
+        let new = now.iter().find(|new| find(then, &new.name).is_none())?;
+        Some(format!("{} was not there when the run began", new.name))
+    };
+    changed.or_else(added)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::fs;
+
+    #[test]
+    fn a_change_of_one_byte_a_lost_and_a_new_file_are_named() {
+        let folder = tempfile::tempdir().unwrap();
+        let [area, index] = ["area.shp", "area.dbf"].map(|name| folder.path().join(name));
+        fs::write(&area, "polygons").unwrap();
+        fs::write(&index, "thickness 1.0").unwrap();
+        let now = || {
+            let strip = |path: &Path| path.strip_prefix(folder.path()).unwrap().to_owned();
+            inputs(&[area.clone(), area.clone()], strip).unwrap()
+        };
+        let then = now();
+        assert_eq!(then.iter().map(|one| one.name.as_str()).collect::<Vec<_>>(), ["area.dbf", "area.shp"]);
+        assert_eq!(difference(&then, &now()), None);
+        fs::write(&index, "thickness 2.0").unwrap();
+        let changed = difference(&then, &now()).unwrap();
+        assert!(changed.starts_with("area.dbf is not what the run began with"), "{changed}");
+        fs::remove_file(&index).unwrap();
+        assert!(difference(&then, &now()).unwrap().contains("not there any more"));
+        let without = now();
+        fs::write(folder.path().join("area.prj"), "").unwrap();
+        assert_eq!(difference(&without, &now()).unwrap(), "area.prj was not there when the run began");
+        assert!(
+            inputs(&[folder.path().join("none")], Path::to_owned).unwrap_err().to_string().contains("none")
+        );
+    }
+}
