@@ -1,4 +1,4 @@
-//! SimdLevel of a cell update, counted by valgrind: the same on a busy machine as on an idle one.
+//! Instructions of a cell update, counted by valgrind: the same on a busy machine as on an idle one.
 //!
 //! `.ci/instructions` counts, and fails where a number differs by more than 2 % from `instructions.txt`, up or down;
 //! `.ci/instructions --record` writes that file. valgrind knows no AVX-512: what is counted are the lanes of AVX2.
@@ -9,9 +9,10 @@ use std::path::Path;
 use std::process::{Command, ExitCode};
 
 /// What is counted.
-const COUNTED: [&str; 7] = [
+const COUNTED: [&str; 8] = [
     "energy_stable",
     "energy_stable_terrain",
+    "energy_stable_2_terrain",
     "balanced",
     "balanced_terrain",
     "verfahren_5",
@@ -55,7 +56,7 @@ fn take(setup: &Setup, steps: u64) -> Result<(), Trouble> {
     })?)
 }
 
-/// SimdLevel that this program executes for so many steps of a setup.
+/// Instructions that this program executes for so many steps of a setup.
 fn count(name: &str, steps: u64) -> Result<f64, Trouble> {
     let output = Command::new("valgrind")
         .args(["--tool=callgrind", "--callgrind-out-file=/dev/null"])
@@ -71,7 +72,7 @@ fn count(name: &str, steps: u64) -> Result<f64, Trouble> {
     }
 }
 
-/// SimdLevel of a cell update.
+/// Instructions of a cell update.
 fn cost(name: &str) -> Result<f64, Trouble> {
     let cells = CELLS.pow(setup(name)?.dimensions as u32) as f64;
     Ok((count(name, 2 * STEPS)? - count(name, STEPS)?) / (STEPS as f64 * cells))
@@ -86,7 +87,7 @@ fn tools() -> Result<String, Trouble> {
 
 fn record() -> Result<ExitCode, Trouble> {
     let mut text = format!(
-        "# SimdLevel of a cell update, AVX2, {CELLS} x {CELLS} cells; written by `.ci/instructions --record`.\n# {}\n",
+        "# Instructions of a cell update, AVX2, {CELLS} x {CELLS} cells; written by `.ci/instructions --record`.\n# {}\n",
         tools()?
     );
     for name in COUNTED {

@@ -88,8 +88,10 @@ impl From<CellByCell> for Law {
 }
 
 impl CellByCell {
-    /// The resistance of one cell as an array.
-    #[inline(never)]
+    /// The resistance of one cell as an array. (Cold, and with a body that the compiler of the loops sees: of a call that it knows
+    /// nothing of it would think that it changes what the loops hold in registers.)
+    #[cold]
+    #[inline]
     fn of_one(&self, [thickness, speed_squared, load, weight]: [f64; 4]) -> [f64; 4] {
         let Resistance { dry, viscous, drag, holding } = match self {
             CellByCell::PouliquenForterre(law) => law.resistance(thickness, speed_squared, load, weight),
