@@ -8,9 +8,9 @@ use granflow::models::hadeler_kuttler::run::site::Site;
 use granflow::scheme::Scheme;
 use granflow::simulation::{Simulation, StepSize};
 
-use super::super::parallel;
 use super::{SCHEMES, SOURCE, failed};
 use crate::failure::Failure;
+use crate::page::parallel;
 
 /// Nine tenths of the step that eqs. 26, 27 allow.
 fn step(scheme: HadelerKuttler) -> StepSize {
