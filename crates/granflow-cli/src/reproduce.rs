@@ -6,7 +6,7 @@ use crate::failure::{Failure, print};
 use crate::page;
 
 mod kinetic;
-mod sandpiles;
+pub mod sandpiles;
 
 /// Computes the tables and figures of a paper, or of all.
 pub fn reproduce(paper: Option<&str>, out: &Path) -> Result<(), Failure> {

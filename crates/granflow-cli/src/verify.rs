@@ -7,19 +7,37 @@ use granflow::output::tables::Row;
 use crate::failure::{Failure, print};
 use crate::page::{self, parallel};
 
+mod arc;
+mod avalanches;
 mod benchmark;
+mod column;
 mod convergence;
+mod dice;
+mod energy;
+mod mountain;
 mod ode;
 mod planes;
+mod rest;
+mod sandpiles;
 mod scheme;
 mod sheets;
+mod slab;
 mod smooth;
+mod turned;
 
 use benchmark::{Benchmark, Finding, Piece, Size};
 
 /// All benchmarks, in the order of the page.
 fn all() -> impl Iterator<Item = &'static Benchmark> {
-    planes::BENCHMARKS.iter().chain(&sheets::BENCHMARKS).chain(&smooth::BENCHMARKS)
+    planes::BENCHMARKS
+        .iter()
+        .chain(&sheets::BENCHMARKS)
+        .chain(&smooth::BENCHMARKS)
+        .chain(&slab::BENCHMARKS)
+        .chain(&arc::BENCHMARKS)
+        .chain(&rest::BENCHMARKS)
+        .chain([&turned::BENCHMARK, &column::BENCHMARK, &sandpiles::BENCHMARK])
+        .chain([&energy::BENCHMARK, &avalanches::BENCHMARK])
 }
 
 /// The list under `granflow verify --help`.

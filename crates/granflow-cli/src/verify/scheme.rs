@@ -35,6 +35,9 @@ pub enum Scheme {
 
 use Scheme::{Balanced as First, Balanced2 as Second, EnergyStable as Stable, EnergyStable2 as Stable2};
 
+/// The schemes that come to rest, on any bed and beside dry cells.
+pub const RESTING: [Scheme; 4] = [Stable, Stable2, First, Second];
+
 /// All schemes; the Verfahren run on planes, under Coulomb friction, where no cell is dry.
 pub const ALL: [Scheme; 9] = [
     Stable,
@@ -199,6 +202,11 @@ pub fn component(run: &dyn Stepper, k: usize) -> Vec<f64> {
 /// All depths, x fastest.
 pub fn depths(run: &dyn Stepper) -> Vec<f64> {
     component(run, 0)
+}
+
+/// Relative error of the ledger: volume now and gone, against the volume at the start.
+pub fn lost(run: &dyn Stepper, before: f64) -> f64 {
+    (run.totals().volume + run.outflow().iter().sum::<f64>() - before) / before
 }
 
 /// Square cells with one kind of boundary all round.

@@ -1,4 +1,4 @@
-//! Slabs and dams that stop, and a jump that stays a jump. Errors and orders: `granflow verify`.
+//! A dam that stops, and a jump that stays a jump. Errors and orders: `granflow verify`.
 #![allow(clippy::duplicate_mod, reason = "the same tests for each scheme")]
 
 #[path = "../oracle/mod.rs"]
