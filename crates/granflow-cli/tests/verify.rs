@@ -19,7 +19,7 @@ fn a_benchmark_is_verified() {
     let rows: serde_json::Value =
         serde_json::from_slice(&std::fs::read(out.join("tables.json")).expect("tables.json")).expect("JSON");
     let rows = rows.as_array().expect("rows");
-    assert_eq!(rows.len(), 8, "error and order of four schemes: {rows:#?}");
+    assert_eq!(rows.len(), 12, "error and order of six schemes: {rows:#?}");
     for row in rows {
         assert_eq!(row["pass"], true, "{row:#}");
         assert!(row["reason"].as_str().is_some_and(|reason| reason.len() > 20), "{row:#}");
