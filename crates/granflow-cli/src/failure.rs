@@ -15,6 +15,8 @@ use crate::snippet::{self, Ink};
 /// Why a command did not do what it was asked.
 #[derive(Debug)]
 pub enum Failure {
+    /// What was computed is not what it should be (exit status 1).
+    Verdict(String),
     /// The command line makes no sense (exit status 2).
     Usage {
         /// What was found.
@@ -46,6 +48,7 @@ impl Failure {
     /// The exit status of the program.
     fn status(&self) -> u8 {
         match self {
+            Self::Verdict(_) => 1,
             Self::Usage { .. } => 2,
             Self::Case(error) => match error.kind() {
                 CaseErrorKind::Invalid => 2,
@@ -63,7 +66,9 @@ impl Failure {
         let text = match self {
             Self::Usage { message, cure } => format!("error: {message}\n  help: {cure}\n"),
             Self::Case(error) => snippet::shown(&error, Ink::of_standard_error()),
-            Self::Computation(message) | Self::File(message) => format!("error: {message}\n"),
+            Self::Verdict(message) | Self::Computation(message) | Self::File(message) => {
+                format!("error: {message}\n")
+            }
             Self::Interrupted(message) => format!("interrupted: {message}\n"),
         };
         tell(&text);

@@ -13,12 +13,14 @@ mod failure;
 mod interrupt;
 mod mountain;
 mod new;
+mod page;
 mod plot;
 mod progress;
 mod reproduce;
 mod run;
 mod schema;
 mod snippet;
+mod verify;
 
 use failure::Failure;
 
@@ -31,7 +33,7 @@ Examples:
   granflow run silo.toml                 writes silo/result.nc, silo/summary.json, silo/figures/
   granflow run silo.toml --set scheme.name=energy_stable --set time.until=rest --out rest
 
-Exit status: 0 done; 2 bad usage or bad case; 3 the computation failed; 4 a file could not be read or written;
+Exit status: 0 done; 1 a row of `granflow verify` fails; 2 bad usage or bad case; 3 the computation failed; 4 a file could not be read or written;
 130 interrupted.";
 
 /// Where a granular mass comes to rest: Savage-Hutter avalanches on grids and real terrain, Hadeler-Kuttler sandpiles on tables.
@@ -95,6 +97,19 @@ enum Command {
         #[arg(long, value_name = "DIR", default_value = "reproduce")]
         out: PathBuf,
     },
+    /// Holds every scheme against known answers: errors, orders, rest, energy, conservation
+    #[command(after_help = verify::benchmarks_help())]
+    Verify {
+        /// The benchmarks (default: all)
+        #[arg(value_name = "BENCHMARK")]
+        benchmarks: Vec<String>,
+        /// Where the results go
+        #[arg(long, value_name = "DIR", default_value = "verify")]
+        out: PathBuf,
+        /// Without the finest grids and with fewer random cases, as the tests do
+        #[arg(long)]
+        quick: bool,
+    },
     /// Draws the figures of finished runs again
     Plot {
         /// Results of finished runs
@@ -139,6 +154,7 @@ fn act(command: Command) -> Result<(), Failure> {
         }
         Command::New { kind: Some(kind), file, .. } => new::new(&kind, file),
         Command::Reproduce { paper, out } => reproduce::reproduce(paper.as_deref(), &out),
+        Command::Verify { benchmarks, out, quick } => verify::verify(&benchmarks, &out, quick),
         Command::Plot { results, out } => plot::plot(&results, out.as_deref()),
         Command::Bench(options) => bench::bench(&options),
         Command::Schema => schema::schema(),

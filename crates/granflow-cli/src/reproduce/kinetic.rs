@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use granflow::output::report::{Figure, Table};
 
-use super::{Chapter, Picture};
+use crate::page::{Chapter, Picture};
 
 mod computed;
 mod draw;
@@ -60,8 +60,8 @@ fn introduction<'a>() -> Chapter<'a> {
         title: "The kinetic schemes: how to read".into(),
         text: vec![
             "The papers print few numbers: most rows hold their statements (stops, symmetric, unchanged, splits in \
-             two) against our runs. Rows marked \"independent run\" hold them against a separate transcription of the \
-             printed schemes, not against a printed number."
+             two) against our runs. Where \"independent run\" stands beside the expected number, it comes from a \
+             separate transcription of the printed schemes, not from the paper."
                 .into(),
             "Not compared: coordinates read off the printed figures. The papers do not print the domains, the silo's \
              walls and the places x0; each example says what is used here."

@@ -8,7 +8,7 @@ mod draw;
 mod line;
 mod numbers;
 mod page;
-mod plane;
+pub mod plane;
 mod printed;
 
 pub use numbers::rows;
@@ -28,7 +28,7 @@ const fn adaptive(exponent: f64) -> HadelerKuttler {
 }
 
 /// The three schemes, m = 3 in Θ: the choice that fits Table 1.
-const SCHEMES: [(&str, HadelerKuttler); 3] =
+pub const SCHEMES: [(&str, HadelerKuttler); 3] =
     [("first order", FIRST_ORDER), ("second order", SECOND_ORDER), ("adaptive, m = 3", adaptive(3.0))];
 
 /// All that is computed for the paper.

@@ -1,4 +1,4 @@
-//! The HTML pages: `report.html` of a run on terrain and `index.html` of `granflow reproduce`.
+//! The HTML pages: `report.html` of a run on terrain and `index.html` of `granflow reproduce` and `granflow verify`.
 //!
 //! Each is one self-contained page, figures inlined, that prints well and needs no script.
 
@@ -187,10 +187,12 @@ fn inline(figure: &Figure) -> Result<Markup, Error> {
 }
 
 fn rows_table(rows: &[Row]) -> Markup {
+    let reasons = rows.iter().any(|row| row.reason.is_some());
     html! {
         div.wide { table.rows {
             thead { tr {
-                @for head in ["", "Name", "Quantity", "Published | exact", "Computed", "Tolerance"] { th scope="col" { (head) } }
+                @for head in ["", "Name", "Quantity", "Expected", "Computed", "Tolerance"] { th scope="col" { (head) } }
+                @if reasons { th scope="col" { "Why this tolerance" } }
             } }
             tbody {
                 @for row in rows {
@@ -201,6 +203,7 @@ fn rows_table(rows: &[Row]) -> Markup {
                         td.number { (readable(row.expected.value())) " " small { (origin(row.expected)) } }
                         td.number { (readable(row.computed)) }
                         td.number { (tolerance(row)) }
+                        @if reasons { td { (row.reason.as_deref().unwrap_or_default()) } }
                     }
                 }
             }
@@ -222,6 +225,7 @@ fn origin(expected: Expected) -> &'static str {
     match expected {
         Expected::Published(_) => "published",
         Expected::Exact(_) => "exact",
+        Expected::Independent(_) => "independent run",
     }
 }
 
@@ -360,7 +364,10 @@ mod tests {
                 && page.contains("✗ FAIL")
         );
         assert!(page.contains("± 5 %") && page.contains("<small>published</small>"));
-        write_index(&path, "Reproduced", &[row(1.5)], &[]).unwrap();
+        assert!(!page.contains("Why this tolerance"));
+        write_index(&path, "Reproduced", &[row(1.5).because("two digits")], &[]).unwrap();
+        let page = fs::read_to_string(&path).unwrap();
+        assert!(page.contains("Why this tolerance") && page.contains("<td>two digits</td>"));
         assert!(fs::read_to_string(&path).unwrap().contains("All 1 rows"));
     }
 

@@ -13,6 +13,8 @@ pub enum Expected {
     Published(f64),
     /// A number known from a formula.
     Exact(f64),
+    /// A number of an independent run: another program's, of the same equations.
+    Independent(f64),
 }
 
 impl Expected {
@@ -20,7 +22,7 @@ impl Expected {
     #[must_use]
     pub const fn value(self) -> f64 {
         match self {
-            Self::Published(value) | Self::Exact(value) => value,
+            Self::Published(value) | Self::Exact(value) | Self::Independent(value) => value,
         }
     }
 }
@@ -46,7 +48,7 @@ pub struct Row {
     pub name: String,
     /// What is compared.
     pub quantity: String,
-    /// The number it is held against, under the key `published` or `exact`.
+    /// The number it is held against, under the key `published`, `exact` or `independent`.
     #[serde(flatten)]
     pub expected: Expected,
     /// Our number.
@@ -55,6 +57,9 @@ pub struct Row {
     pub tolerance: f64,
     /// What the tolerance measures.
     pub measure: Measure,
+    /// Why it may be off that far, where that is said.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub reason: Option<String>,
     pass: bool,
 }
 
@@ -77,7 +82,22 @@ impl Row {
             Measure::AtMost => off <= tolerance,
             Measure::AtLeast => -off <= tolerance,
         };
-        Self { name: name.into(), quantity: quantity.into(), expected, computed, tolerance, measure, pass }
+        Self {
+            name: name.into(),
+            quantity: quantity.into(),
+            expected,
+            computed,
+            tolerance,
+            measure,
+            reason: None,
+            pass,
+        }
+    }
+
+    /// The row with the reason for its tolerance.
+    #[must_use]
+    pub fn because(self, reason: impl Into<String>) -> Self {
+        Self { reason: Some(reason.into()), ..self }
     }
 
     /// Whether the computed number is within the tolerance.
@@ -124,6 +144,8 @@ mod tests {
         let rows = [
             Row::new("Table 1", "mass", Expected::Published(1.5), 1.5, Measure::Absolute, 0.05),
             Row::new("B", "order", Expected::Exact(1.0), f64::INFINITY, Measure::Absolute, 0.1),
+            Row::new("C", "steps", Expected::Independent(7.0), 7.0, Measure::Absolute, 0.0)
+                .because("a count"),
         ];
         write(&path, &rows).unwrap();
         let read: serde_json::Value = serde_json::from_slice(&std::fs::read(&path).unwrap()).unwrap();
@@ -134,5 +156,6 @@ mod tests {
         );
         assert_eq!((&read[1]["exact"], &read[1]["computed"]), (&1.0.into(), &serde_json::Value::Null));
         assert_eq!(read[1]["pass"], false);
+        assert_eq!((&read[2]["independent"], &read[2]["reason"]), (&7.0.into(), &"a count".into()));
     }
 }

@@ -1,5 +1,4 @@
-//! The benchmarks with known answers: three resolutions each, errors and orders as rows of data with their bounds.
-//! `cargo test --release --test benchmarks -- --nocapture` prints the verification table.
+//! A dam that stops, and a jump that stays a jump. Errors and orders: `granflow verify`.
 #![allow(clippy::duplicate_mod, reason = "the same tests for each scheme")]
 
 #[path = "../oracle/mod.rs"]
@@ -7,20 +6,20 @@ mod oracle;
 
 #[path = "."]
 mod energy_stable {
+    #[path = "stopping.rs"]
+    mod stopping;
     #[path = "../support/mod.rs"]
     mod support;
-    #[path = "table.rs"]
-    mod table;
     #[path = "../support/energy_stable.rs"]
     mod tried;
 }
 
 #[path = "."]
 mod balanced {
+    #[path = "stopping.rs"]
+    mod stopping;
     #[path = "../support/mod.rs"]
     mod support;
-    #[path = "table.rs"]
-    mod table;
     #[path = "../support/balanced.rs"]
     mod tried;
 }

@@ -1,4 +1,4 @@
-//! Benchmark G: what should rest rests bit for bit, what should start starts, what flows comes to rest by itself.
+//! What should start starts, what flows comes to rest by itself. What should rest: `granflow verify G`.
 #![allow(clippy::duplicate_mod, reason = "the same tests for each scheme")]
 
 #[path = "../oracle/mod.rs"]

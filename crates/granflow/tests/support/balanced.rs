@@ -41,13 +41,6 @@ impl Order {
     pub fn off_in_two_dimensions(self) -> f64 {
         0.0
     }
-    /// The row of a table of bounds.
-    pub fn row(self) -> usize {
-        match self {
-            Order::First => 0,
-            Order::Second => 1,
-        }
-    }
     /// The share of the static bound beyond which a cone starts.
     pub fn cone_starts(self) -> f64 {
         1.0 + 1e-6

@@ -43,13 +43,6 @@ impl Order {
     pub fn off_in_two_dimensions(self) -> f64 {
         0.02
     }
-    /// The row of a table of bounds.
-    pub fn row(self) -> usize {
-        match self {
-            Order::EnergyStable => 2,
-            Order::EnergyStable2 => 3,
-        }
-    }
     /// The share of the static bound beyond which a cone of a radius of a few cells starts: what the grid does not resolve of its
     /// surface holds too (`docs/rest.md`).
     pub fn cone_starts(self) -> f64 {

@@ -1,8 +1,6 @@
 //! Builds the runs of the test suite: chutes, terrain from a function; `super::tried` says of which scheme.
 #![allow(dead_code)]
 
-pub mod mountain;
-
 use granflow::grid::Grid;
 use granflow::kernels::Kernel;
 use granflow::savage_hutter::Flow;

@@ -7,6 +7,7 @@ use granflow::savage_hutter::exact::Riemann;
 
 use super::examples::{EXAMPLES, Example, Id, SCHEMES};
 use crate::failure::Failure;
+use crate::page::parallel;
 
 /// Slower than this is stopped, for schemes that do not reach speed 0 by construction.
 const STOPPED: f64 = 1e-12;
@@ -167,12 +168,10 @@ impl Runs {
     /// Runs every example by every scheme, on all cores.
     pub fn compute() -> Result<Self, Failure> {
         let schemes = SCHEMES.len();
-        super::super::parallel(EXAMPLES.len() * schemes, |k| {
-            Computed::run(&EXAMPLES[k / schemes], SCHEMES[k % schemes])
-        })
-        .into_iter()
-        .collect::<Result<_, _>>()
-        .map(Self)
+        parallel(EXAMPLES.len() * schemes, |k| Computed::run(&EXAMPLES[k / schemes], SCHEMES[k % schemes]))
+            .into_iter()
+            .collect::<Result<_, _>>()
+            .map(Self)
     }
 
     /// An example by all schemes.

@@ -6,9 +6,9 @@ use granflow::hadeler_kuttler::table::Table;
 use granflow::models::hadeler_kuttler::run::site::Site;
 use granflow::simulation::{Simulation, StepSize};
 
-use super::super::parallel;
 use super::{LAMBDA, SCHEMES, SOURCE, adaptive, failed};
 use crate::failure::Failure;
+use crate::page::parallel;
 
 /// Standing layer at the nodes and rolling layer in the cells.
 #[derive(Debug, Clone)]

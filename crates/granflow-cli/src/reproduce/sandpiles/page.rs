@@ -7,11 +7,11 @@ use granflow::output::report::{Figure, Table};
 
 mod square;
 
-use super::super::{Chapter, Picture};
 use super::draw::{self, Layer};
 use super::line::{self, Layers};
 use super::numbers::orders;
 use super::{Runs, SCHEMES, printed};
+use crate::page::{Chapter, Picture};
 
 /// The page's sections on the paper; pictures go into `folder`.
 pub fn chapters<'a>(runs: &'a Runs, folder: &Path) -> Vec<Chapter<'a>> {

@@ -8,9 +8,9 @@ use granflow::models::hadeler_kuttler::run::site::Site;
 use granflow::scheme::Scheme;
 use granflow::simulation::{Simulation, StepSize};
 
-use super::super::parallel;
 use super::{SCHEMES, SOURCE, failed};
 use crate::failure::Failure;
+use crate::page::parallel;
 
 /// Nine tenths of the step that eqs. 26, 27 allow.
 fn step(scheme: HadelerKuttler) -> StepSize {
@@ -63,27 +63,43 @@ fn layers(run: &Simulation<2, HadelerKuttler>) -> (Vec<f64>, Vec<f64>) {
     (all(columns, rows, |state| state.u), all(columns - 1, rows - 1, |state| state.v))
 }
 
+/// The open square of `n` x `n` cells, and the source that covers it.
+fn open_square(n: usize) -> (Site<2>, Vec<f64>) {
+    let site = Site::level(Table::rectangle([n; 2], [[true; 2]; 2]), [1.0 / n as f64; 2]);
+    (site, vec![SOURCE; n * n])
+}
+
 /// Errors on the open square under a complete source, at [`END`].
-fn square(n: usize, scheme: HadelerKuttler) -> Result<Errors, Failure> {
-    let h = 1.0 / n as f64;
-    let all = [[true; 2]; 2];
-    let site = Site::level(Table::rectangle([n; 2], all), [h; 2]);
+pub fn square(n: usize, scheme: HadelerKuttler) -> Result<Errors, Failure> {
+    let (site, source) = open_square(n);
     let empty = (vec![0.0; (n + 1) * (n + 1)], vec![0.0; n * n]);
-    let mut run =
-        site.simulation(scheme, step(scheme), &vec![SOURCE; n * n], (&empty.0, &empty.1)).map_err(failed)?;
+    let mut run = site.simulation(scheme, step(scheme), &source, (&empty.0, &empty.1)).map_err(failed)?;
     while run.time() < END {
         run.advance(END).map_err(failed)?;
     }
     let (u, v) = layers(&run);
+    Ok(off_the_exact(n, &u, &v))
+}
+
+/// Errors on the open square of the equilibrium that is computed without time steps.
+pub fn square_at_once(n: usize) -> Result<Errors, Failure> {
+    let (site, source) = open_square(n);
+    let direct = site.equilibrium(&source).map_err(failed)?;
+    Ok(off_the_exact(n, &direct.u, &direct.v))
+}
+
+/// Layers on the open square against its exact equilibrium.
+fn off_the_exact(n: usize, u: &[f64], v: &[f64]) -> Errors {
     let exact = |x: f64, y: f64| {
-        exact::rectangle([1.0; 2], all, SOURCE, [x, y]).expect("an open square has an equilibrium")
+        exact::rectangle([1.0; 2], [[true; 2]; 2], SOURCE, [x, y]).expect("an open square has an equilibrium")
     };
+    let h = 1.0 / n as f64;
     let at = |k: usize, columns: usize, half: f64| {
         exact(((k % columns) as f64 + half) * h, ((k / columns) as f64 + half) * h)
     };
     let u = u.iter().enumerate().map(|(k, u)| [*u, at(k, n + 1, 0.0).u]);
     let v = v.iter().enumerate().map(|(k, v)| [*v, at(k, n, 0.5).v]);
-    Ok(Errors::between(u, v, n))
+    Errors::between(u, v, n)
 }
 
 /// A pile on the square.

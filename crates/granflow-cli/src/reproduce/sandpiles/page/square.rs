@@ -2,10 +2,10 @@
 
 use std::path::Path;
 
-use super::super::super::Chapter;
 use super::super::plane::{self, Errors, Pile};
 use super::super::{SCHEMES, draw, printed};
 use super::{ours, picture, table, theirs};
+use crate::page::Chapter;
 
 /// The table of errors on the square.
 pub fn square<'a>(runs: &plane::Runs) -> Chapter<'a> {

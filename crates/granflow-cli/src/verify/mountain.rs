@@ -1,6 +1,7 @@
 //! Random rough mountains: a fall that runs out, fractal roughness, cliffs, pits, holes in the data.
 
-use super::{Dice, GRAVITY};
+use super::dice::Dice;
+use super::scheme::GRAVITY;
 use granflow::kernels::Kernel;
 use granflow::savage_hutter::Flow;
 use granflow::savage_hutter::ground::{Bed, Terrain};
