@@ -14,6 +14,7 @@ mod column;
 mod convergence;
 mod dice;
 mod energy;
+mod flat_dam;
 mod mountain;
 mod ode;
 mod planes;
@@ -36,7 +37,7 @@ fn all() -> impl Iterator<Item = &'static Benchmark> {
         .chain(&slab::BENCHMARKS)
         .chain(&arc::BENCHMARKS)
         .chain(&rest::BENCHMARKS)
-        .chain([&turned::BENCHMARK, &column::BENCHMARK, &sandpiles::BENCHMARK])
+        .chain([&flat_dam::BENCHMARK, &turned::BENCHMARK, &column::BENCHMARK, &sandpiles::BENCHMARK])
         .chain([&energy::BENCHMARK, &avalanches::BENCHMARK])
 }
 

@@ -1,15 +1,12 @@
-//! Flows in one dimension on planes: A, B, D, E, the water limit of I, J.
+//! Flows in one dimension on planes: A, B, D, the water limit of I, J.
 
 use granflow::output::figures::Axis;
 use granflow::savage_hutter::Flow as State;
-use granflow::savage_hutter::exact::{
-    CapRelease, FlatDamBreak, Flow1, GranularJump, ParabolicCap, Riemann, SlopeDamBreak,
-};
-use granflow::savage_hutter::ground::Chute;
+use granflow::savage_hutter::exact::{CapRelease, Flow1, GranularJump, ParabolicCap, Riemann, SlopeDamBreak};
 use granflow::scheme::Boundary;
 
 use super::benchmark::{Benchmark, View};
-use super::convergence::{Bound, Flow, Most, Over, Solved, cells, mean};
+use super::convergence::{Flow, Over, Solved, cells, mean};
 use super::scheme::Scheme::{Balanced, Balanced2, EnergyStable, EnergyStable2, Verfahren};
 use super::scheme::{
     GRAVITY, Run, Scheme, Setting, Surface, depths, failed, incline, line, on_bed, on_plane, plane, terrain,
@@ -17,14 +14,17 @@ use super::scheme::{
 };
 use crate::failure::Failure;
 
-const SCALED: [Axis; 2] = [Axis::new("x / L", ""), Axis::new("depth h / H", "")];
+/// Axes of a profile in the papers' scaling.
+pub const SCALED: [Axis; 2] = [Axis::new("x / L", ""), Axis::new("depth h / H", "")];
 const METRES: [Axis; 2] = [Axis::new("distance down the slope x", "m"), Axis::new("depth h", "m")];
 
-const fn curves([x, y]: [Axis<'static>; 2], caption: &'static str) -> Option<View> {
+/// The picture of the profiles.
+pub const fn curves([x, y]: [Axis<'static>; 2], caption: &'static str) -> Option<View> {
     Some(View { x, y, caption })
 }
 
-const fn errors(unit: &'static str, label: &'static str, error_unit: &'static str) -> Option<View> {
+/// The picture of errors over cell size.
+pub const fn errors(unit: &'static str, label: &'static str, error_unit: &'static str) -> Option<View> {
     Some(View {
         x: Axis::new("cell size Δx", unit),
         y: Axis::new(label, error_unit),
@@ -33,13 +33,13 @@ const fn errors(unit: &'static str, label: &'static str, error_unit: &'static st
 }
 
 /// What jumps and kinks do to an order.
-const KINKS: ([f64; 2], &str) = (
+pub const KINKS: ([f64; 2], &str) = (
     [1.0, 1.0],
     "beside a jump or a kink no scheme is better than first order; the kinks of a fan cost a first-order scheme up to half an order on such grids",
 );
 
 /// The benchmarks of this file.
-pub const BENCHMARKS: [Benchmark; 9] = [A, B, B_TERRAIN, D, D_TERRAIN, E, RITTER, STOKER, J];
+pub const BENCHMARKS: [Benchmark; 8] = [A, B, B_TERRAIN, D, D_TERRAIN, RITTER, STOKER, J];
 
 const A: Benchmark = Benchmark {
     name: "A",
@@ -243,46 +243,12 @@ const FLOW_D: Flow = Flow {
     solve: dam_on_chute,
 };
 
-const E: Benchmark = Benchmark {
-    name: "E",
-    title: "Dam break on the flat with friction",
-    about: "h = 1 at x < 0 on a horizontal bed, μ = 0.5, scaled (β = 1); at t = 2. Exact: Kerswell 2005, by characteristics; \
-            the front has come to 2t - μt²/2 = 3. The vanishing tip converges slowly: compared is the place where h = 0.01.",
-    pieces: |size| FLOW_E.pieces(size),
-    curves: curves(
-        SCALED,
-        "Depth at t = 2 √(L/g) on the finest grid; the exact line is known from h = 0.01 to 0.95.",
-    ),
-    errors: errors("L", "error of the place where h = 0.01", "L"),
-};
-
-const FIRST_TIP: Most = Most::Fixed(
-    0.11,
-    "a sixth of the 0.6 from the contour to the exact front: a first-order scheme lets the tip lag",
-);
-const SECOND_TIP: Most = Most::Fixed(0.03, "a twentieth of the 0.6 from the contour to the exact front");
-
-const FLOW_E: Flow = Flow {
-    coarsest: 1600,
-    grids: 4,
-    quantity: "place of h = 0.01, off by / L",
-    formal: KINKS,
-    over: Over::Finest,
-    bounds: &[
-        Bound { scheme: EnergyStable, most: FIRST_TIP, order: Some(0.6) },
-        Bound { scheme: EnergyStable2, most: SECOND_TIP, order: Some(0.9) },
-        Bound { scheme: Balanced, most: FIRST_TIP, order: Some(0.6) },
-        Bound { scheme: Balanced2, most: SECOND_TIP, order: Some(0.9) },
-    ],
-    solve: flat_dam,
-};
-
 fn flow(Flow1 { h, u }: Flow1) -> State<1, f64> {
     State { h, q: [h * u] }
 }
 
 /// Where the cells are along x.
-fn places(run: &Run) -> Vec<f64> {
+pub fn places(run: &Run) -> Vec<f64> {
     let ([origin, _], [size, _], [cells, _]) = (run.origin(), run.size(), run.cells());
     (0..cells).map(|i| origin + (i as f64 + 0.5) * size).collect()
 }
@@ -380,24 +346,4 @@ fn dam_on_terrain(scheme: Scheme, cells: usize) -> Result<Solved, Failure> {
     let setting = Setting::coulomb(scheme, mu, 1e-9);
     let run = on_bed(setting, grid, &grounds, |[x], _| State::still(exact.flow(x / cos, 0.0).h / cos))?;
     along_the_bed(run, 5.0, cos, -30.0, |x| exact.flow(x, 5.0).h)
-}
-
-fn flat_dam(scheme: Scheme, cells: usize) -> Result<Solved, Failure> {
-    let (mu, contour) = (0.5, 0.01);
-    let exact = FlatDamBreak::new(mu).map_err(failed)?;
-    let place = |h: f64| exact.contour(h, 2.0).map(|contour| contour.x);
-    let domain = line([-10.0, 6.0], cells, Boundary::Open);
-    let ground = Chute { tilt: [0.0], beta: 1.0, cos: 1.0, curvature: 0.0 };
-    let start = |[x]: [f64; 1]| State::still(if x < 0.0 { 1.0 } else { 0.0 });
-    let mut run = on_plane(Setting::coulomb(scheme, mu, 1e-12), domain, ground, start)?;
-    until(&mut *run, 2.0)?;
-    let h = depths(&*run);
-    let last = h.iter().rposition(|h| *h >= contour).unwrap_or(0);
-    let share = (h[last] - contour) / (h[last] - h[last + 1]);
-    let size = domain.size[0];
-    let found = domain.centre([last])[0] + share * size;
-    let error = place(contour).map_or(f64::NAN, |exact| (found - exact).abs());
-    let known: (Vec<f64>, Vec<f64>) =
-        (1..=95).map(|k| f64::from(k) / 100.0).filter_map(|h| Some((place(h)?, h))).unzip();
-    Ok(Solved { error, one_cell: size, size, section: [places(&run), h], exact: [known.0, known.1] })
 }
