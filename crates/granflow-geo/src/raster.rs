@@ -9,6 +9,7 @@ mod geotiff;
 mod projection;
 mod register;
 mod resample;
+mod room;
 mod system;
 mod wkt;
 

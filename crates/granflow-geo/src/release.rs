@@ -1,5 +1,6 @@
 //! Releases: where material lies at the start and how thick, per cell of the terrain.
 
+mod corners;
 mod coverage;
 mod error;
 mod outlines;

@@ -298,3 +298,32 @@ fn between_stop_and_start_a_layer_rests_if_it_rested_and_moves_if_it_moved() {
         assert_eq!(speed(&*whole).to_bits(), speed(&*part).to_bits());
     }
 }
+
+/// Where a mass has drained the thickness underflows, and powers of it must not make 0/0.
+#[test]
+fn a_draining_layer_without_films_stays_a_number() {
+    let laws = [
+        "quadratic = { tau0 = 0.0, eta = 0.0 }",
+        "quadratic = { tau0 = 0.0, eta = 0.0, manning = 0.05 }",
+        "bingham = { tau0 = 0.0, eta = 1.0 }",
+        "mu_i = { mu1 = 0.1, mu2 = 0.6, i0 = 0.3, grain = 1e-3 }",
+        "pouliquen_forterre = { mu1 = 0.1, mu2 = 0.3, mu3 = 0.12, length = 1e-3 }",
+    ];
+    for law in laws {
+        for scheme in SCHEMES {
+            let text = format!(
+                "grid = {{ x = {{ from = 0.0, to = 40.0, cells = 40 }}, boundary = \"open\" }}\n\
+                 material = {{ gravity = {GRAVITY}, density = {DENSITY}, slope = 0.5, friction.{law} }}\n\
+                 initial.thickness.cap = {{ height = 1.0, centre = 20.0, radius = 8.0 }}\n\
+                 scheme = {{ name = \"{scheme}\", film = 0.0 }}\n\
+                 time.end = 1e9\n"
+            );
+            let mut run = Case::parse(&text, "drain.toml").unwrap().check().unwrap().start().unwrap();
+            for step in 0..1500 {
+                if let Err(failure) = run.step(1e6) {
+                    panic!("{law} with {scheme}, step {step}: {failure}");
+                }
+            }
+        }
+    }
+}

@@ -62,8 +62,8 @@ fn slow_rest(material: &Material, ends: &Ends) -> Option<String> {
     let Some(Until::Rest { trickle, .. }) = ends.until else { return None };
     material.law.has_drag().then(|| {
         let until = match trickle {
-            Some(_) => "the run ends before, once nothing but a trickle has moved for long (time.trickle)",
-            None => "set time.trickle, as in trickle = 0.01, for an end before",
+            Some(_) => "the run ends before if nothing but a trickle has moved for long (time.trickle); time.end limits it",
+            None => "set time.trickle, as in trickle = 0.01, or time.end for an end before",
         };
         format!(
             "{}: its drag lets thin layers drain ever more slowly, and exact rest can take thousands of seconds; {until}",

@@ -181,9 +181,12 @@ fn mask(path: &Path) -> Result<Option<Vec<f64>>, RasterError> {
     if !path.exists() {
         return Ok(None);
     }
-    let file = TiffFile::open(path);
-    let opaque = file.and_then(|file| file.read_band::<u8>(0, 0));
-    let opaque = opaque.map_err(|e| RasterError::geotiff(path, format!("the mask cannot be read: {e}")))?;
+    let unread =
+        |e: &dyn std::fmt::Display| RasterError::geotiff(path, format!("the mask cannot be read: {e}"));
+    let size = std::fs::metadata(path).map_err(|source| RasterError::Io { path: path.into(), source })?.len();
+    let file = TiffFile::open(path).map_err(|e| unread(&e))?;
+    super::room::plausible(path, &file, size)?;
+    let opaque = file.read_band::<u8>(0, 0).map_err(|e| unread(&e))?;
     Ok(Some(opaque.into_iter().map(f64::from).collect()))
 }
 

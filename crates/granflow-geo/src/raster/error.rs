@@ -267,7 +267,7 @@ fn hint(found: &str) -> &'static str {
 
 /// Rounds to two significant digits.
 fn two_digits(value: f64) -> f64 {
-    let scale = 10f64.powi(value.abs().log10().floor() as i32 - 1);
+    let scale = 10f64.powi(value.abs().log10().floor().max(-300.0) as i32 - 1);
     let rounded = (value / scale).round() * scale;
     if scale < 1.0 { (rounded * 1e6).round() / 1e6 } else { rounded }
 }

@@ -5,6 +5,7 @@ mod samples;
 mod write;
 
 use super::declared::Declared;
+use super::room::plausible;
 use super::{Crs, Raster, RasterError, agreed, turn};
 use crate::Remark;
 use geotiff_reader::GeoTiffFile;
@@ -21,7 +22,8 @@ pub(super) fn read(
     given: Option<&Crs>,
     notes: &mut Vec<Remark>,
 ) -> Result<(Raster, Declared), RasterError> {
-    decoded(path, GeoTiffFile::open(path), beside, given, notes)
+    let size = std::fs::metadata(path).map_err(|source| RasterError::Io { path: path.into(), source })?.len();
+    decoded(path, (GeoTiffFile::open(path), size), beside, given, notes)
 }
 
 /// Reads what a file called `name` holds.
@@ -31,12 +33,13 @@ pub(super) fn from_bytes(
     given: Option<&Crs>,
     notes: &mut Vec<Remark>,
 ) -> Result<(Raster, Declared), RasterError> {
-    decoded(name, GeoTiffFile::from_bytes(bytes), Declared::default(), given, notes)
+    let size = bytes.len() as u64;
+    decoded(name, (GeoTiffFile::from_bytes(bytes), size), Declared::default(), given, notes)
 }
 
 fn decoded(
     path: &Path,
-    file: Result<GeoTiffFile, geotiff_reader::Error>,
+    (file, bytes): (Result<GeoTiffFile, geotiff_reader::Error>, u64),
     beside: Declared,
     given: Option<&Crs>,
     notes: &mut Vec<Remark>,
@@ -46,6 +49,7 @@ fn decoded(
         geotiff_reader::Error::NotGeoTiff => error(&unplaced(path)),
         e => error(&format!("the GeoTIFF cannot be read: {e}")),
     })?;
+    plausible(path, file.tiff(), bytes)?;
     let [west, top, cell, height] = place(path, &file, beside.place)?;
     let declared = declared(path, &file, beside)?;
     let crs = system(path, &file, &declared, given, notes)?;

@@ -85,7 +85,7 @@ impl Window {
         for pair in cuts.windows(2) {
             let (middle, rise) = (0.5 * (pair[0] + pair[1]), at(pair[1], 1) - at(pair[0], 1));
             let row = at(middle, 1).floor();
-            if rise == 0.0 || row < 0.0 || row >= self.rows as f64 {
+            if rise == 0.0 || !(row >= 0.0 && row < self.rows as f64) {
                 continue;
             }
             let x = at(middle, 0).clamp(0.0, self.columns as f64);

@@ -22,15 +22,17 @@ pub(super) fn rows(bytes: &[u8]) -> Result<Vec<Row>, String> {
     }
     let row = |k: usize| {
         let row = bytes.get(start + k * length..).filter(|rest| rest.len() + 1 >= length).ok_or_else(cut)?;
-        Ok(match row[0] {
+        let (mark, row) = row.split_first().ok_or_else(cut)?;
+        Ok(match mark {
             b'*' => None,
-            _ => Some(texts(&row[1..length.min(row.len())], &fields)),
+            _ => Some(texts(&row[..(length - 1).min(row.len())], &fields)),
         })
     };
     (0..count).map(row).collect()
 }
 
-/// Name, type and width of the fields.
+/// Name, type and width of the fields. Those without a width hold nothing and are left out: a small file may declare
+/// thousands of them, for every row again.
 fn fields(entries: &[u8]) -> Vec<(String, u8, usize)> {
     let described = entries.chunks_exact(ENTRY).take_while(|entry| entry[0] != b'\r');
     let field = |entry: &[u8]| {
@@ -39,7 +41,7 @@ fn fields(entries: &[u8]) -> Vec<(String, u8, usize)> {
         let more = if entry[11] == b'C' { 256 * entry[17] as usize } else { 0 };
         (String::from_utf8_lossy(name).trim().to_string(), entry[11], entry[16] as usize + more)
     };
-    described.map(field).collect()
+    described.map(field).filter(|(_, _, width)| *width > 0).collect()
 }
 
 /// The fields of a row; empty where nothing is stored, which is blanks or stars.
@@ -104,5 +106,16 @@ pub(super) mod tests {
             2,
             "the mark of its end may be missing"
         );
+    }
+
+    #[test]
+    fn rows_without_a_byte_are_no_rows_and_fields_without_width_no_fields() {
+        let mut bytes = table("T", 'N', &[]);
+        bytes[4..8].copy_from_slice(&u32::MAX.to_le_bytes());
+        bytes[10] = 1;
+        bytes[48] = 0;
+        assert!(super::rows(&bytes).unwrap_err().contains("ends after"), "it says 2^32 rows");
+        bytes[4..8].copy_from_slice(&1u32.to_le_bytes());
+        assert_eq!(super::rows(&bytes).unwrap(), [Some(Vec::new())]);
     }
 }

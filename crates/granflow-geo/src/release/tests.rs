@@ -141,6 +141,10 @@ fn refusals_of_geojson_name_the_feature_and_the_cure() {
         refused("x,y\n1,2", &ONE).contains("neither a shapefile (.shp) nor GeoJSON, it begins with `x,y")
     );
     assert!(refused(r#"{"type":"Polygon","coordinates":"#, &ONE).contains("cannot be read"));
+    let short = refused(&feature(&["[[1,1],[5],[5,1],[1,1]]".to_string()], "{}"), &ONE);
+    assert!(short.contains("feature 1: a corner is [x, y], found [5.0]"), "{short}");
+    let far = refused(&feature(&["[[1,1],[1e300,5],[5,1],[1,1]]".to_string()], "{}"), &ONE);
+    assert!(far.contains("feature 1: a corner of it lies at (1000") && far.contains("no place"), "{far}");
     let bow = feature(&["[[1,1],[5,5],[5,1],[1,4],[1,1]]".to_string()], "{}");
     let message = refused(&bow, &ONE);
     assert!(

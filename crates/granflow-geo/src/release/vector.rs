@@ -1,7 +1,7 @@
 //! Polygons with attributes from shapefiles and GeoJSON.
 
 use super::table::{Row, rows};
-use super::{ReleaseError, boxes};
+use super::{ReleaseError, boxes, corners};
 use crate::raster::{Crs, beside};
 use geo::{Area, Contains, Geometry, InteriorPoint, LineString, Polygon};
 use geojson::GeoJson;
@@ -40,7 +40,6 @@ impl Layer {
         if !is_shapefile(&bytes) {
             return geojson(path, &bytes);
         }
-        let shapes = ShapeReader::from_path(path).and_then(ShapeReader::read);
         let optional = |file: &Path| match std::fs::read(file) {
             Ok(bytes) => Ok(Some(bytes)),
             Err(error) if error.kind() == std::io::ErrorKind::NotFound => Ok(None),
@@ -61,7 +60,7 @@ impl Layer {
             _ => None,
         };
         let records = optional(&table)?;
-        shapefile(path, shapes, (&table, records.as_deref()), crs)
+        shapefile(path, &bytes, (&table, records.as_deref()), crs)
     }
 
     /// As [`Layer::read`], from the bytes of a file that is called `name` in messages.
@@ -81,8 +80,7 @@ impl Layer {
             let layer = geojson(name, bytes)?;
             return Ok(Layer { crs: layer.crs.or(crs), ..layer });
         }
-        let shapes = ShapeReader::new(Cursor::new(bytes)).and_then(ShapeReader::read);
-        shapefile(name, shapes, (&name.with_extension("dbf"), table), crs)
+        shapefile(name, bytes, (&name.with_extension("dbf"), table), crs)
     }
 }
 
@@ -102,10 +100,12 @@ fn no_polygon(path: &Path, feature: usize, found: &str) -> ReleaseError {
 /// The layer of the shapes of a file and the table beside it.
 fn shapefile(
     path: &Path,
-    shapes: Result<Vec<Shape>, shapefile::Error>,
+    shapes: &[u8],
     (table, bytes): (&Path, Option<&[u8]>),
     crs: Option<Crs>,
 ) -> Result<Layer, ReleaseError> {
+    corners::of_shapes(shapes).map_err(|problem| unreadable(path, problem))?;
+    let shapes = ShapeReader::new(Cursor::new(shapes)).and_then(ShapeReader::read);
     let shapes = shapes.map_err(|e| unreadable(path, e))?;
     let records: Vec<Row> = match bytes {
         Some(bytes) => rows(bytes).map_err(|e| unreadable(table, e))?,
@@ -132,14 +132,18 @@ fn shapefile(
             Shape::NullShape => continue,
             _ => return Err(no_polygon(path, number, &kind)),
         };
-        if !rings.iter().flatten().all(|corner| corner.x.is_finite() && corner.y.is_finite()) {
-            let problem = "a corner of it is not a number; draw it again, or delete it".to_owned();
-            return Err(ReleaseError::Shape { path: path.into(), feature: number, problem });
-        }
-        features.push(Feature { number, polygons: nested(rings), attributes });
+        let discs: Vec<Polygon> = rings.into_iter().map(|ring| Polygon::new(ring, Vec::new())).collect();
+        placed(path, number, &discs)?;
+        features.push(Feature { number, polygons: nested(discs), attributes });
     }
     let left_out = all - features.len();
     Ok(Layer { name: path.into(), features, crs, left_out })
+}
+
+/// Refuses polygons with a corner that is no place.
+fn placed(path: &Path, feature: usize, polygons: &[Polygon]) -> Result<(), ReleaseError> {
+    let wrong = |problem| ReleaseError::Shape { path: path.into(), feature, problem };
+    corners::of_polygons(polygons).map_err(wrong)
 }
 
 fn line<P>(points: &[P], place: impl Fn(&P) -> (f64, f64)) -> LineString {
@@ -147,8 +151,7 @@ fn line<P>(points: &[P], place: impl Fn(&P) -> (f64, f64)) -> LineString {
 }
 
 /// Polygons with holes from loose rings by how deep they lie in one another, whatever their order and direction.
-fn nested(rings: Vec<LineString>) -> Vec<Polygon> {
-    let mut discs: Vec<Polygon> = rings.into_iter().map(|ring| Polygon::new(ring, Vec::new())).collect();
+fn nested(mut discs: Vec<Polygon>) -> Vec<Polygon> {
     // A ring without area may be one that crosses itself: that is for the caller to refuse.
     discs.retain(|disc| !disc.exterior().0.is_empty());
     discs.sort_by(|a, b| b.unsigned_area().total_cmp(&a.unsigned_area()));
@@ -202,8 +205,11 @@ fn geojson(path: &Path, bytes: &[u8]) -> Result<Layer, ReleaseError> {
     });
     let features = shaped.map(|(feature, geometry, number)| {
         let mut polygons = Vec::new();
+        let wrong = |problem| ReleaseError::Shape { path: path.into(), feature: number, problem };
+        corners::of_json(&geometry).map_err(wrong)?;
         let geometry = Geometry::<f64>::try_from(geometry).map_err(|e| unreadable(path, e))?;
         collect(geometry, &mut polygons).map_err(|kind| no_polygon(path, number, kind))?;
+        placed(path, number, &polygons)?;
         let text = |value: geojson::JsonValue| match value {
             geojson::JsonValue::String(text) => text,
             geojson::JsonValue::Null => String::new(),

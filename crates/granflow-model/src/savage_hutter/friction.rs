@@ -93,6 +93,8 @@ impl CellByCell {
     #[cold]
     #[inline]
     fn of_one(&self, [thickness, speed_squared, load, weight]: [f64; 4]) -> [f64; 4] {
+        // No power of it overflows.
+        let thickness = thickness.max(1e-100);
         let Resistance { dry, viscous, drag, holding } = match self {
             CellByCell::PouliquenForterre(law) => law.resistance(thickness, speed_squared, load, weight),
             CellByCell::MuI(law) => law.resistance(thickness, speed_squared, load, weight),

@@ -129,7 +129,7 @@ pub(crate) struct HerschelBulkley {
     pub tau0: f64,
     /// Consistency k in Pa s^n.
     pub k: f64,
-    /// Exponent n.
+    /// Exponent n, from 0.3 to 1.5.
     pub n: f64,
 }
 
@@ -350,8 +350,9 @@ impl Friction {
             Self::HerschelBulkley(law) => {
                 look.not_negative(&key("tau0"), Some(law.tau0))?;
                 look.positive(&key("k"), Some(law.k))?;
-                let usual = |n: f64| (0.1..=3.0).contains(&n);
-                look.number(&key("n"), law.n, usual, "an exponent from 0.1 to 3")?;
+                // The viscosity of a step is that of the speed before: beyond 2 that does not settle.
+                let usual = |n: f64| (0.3..=1.5).contains(&n);
+                look.number(&key("n"), law.n, usual, "an exponent from 0.3 to 1.5")?;
             }
             Self::Quadratic(law) => {
                 look.not_negative(&key("tau0"), Some(law.tau0))?;

@@ -240,3 +240,19 @@ fn a_system_by_parameters_is_the_one_with_the_code() {
     assert_eq!(utm(9.0).unwrap().crs.and_then(|crs| crs.epsg), Some(25832));
     assert!(utm(15.0).unwrap_err().to_string().contains("longitude of origin 15 against 9"));
 }
+
+#[test]
+fn an_image_that_its_file_cannot_hold_is_refused_before_room_is_made() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("dem.tif");
+    hill().write_geotiff(&path).unwrap();
+    let whole = std::fs::read(&path).unwrap();
+    // The first two entries of the first directory are the columns and the rows.
+    let first = u32::from_le_bytes(whole[4..8].try_into().unwrap()) as usize + 2 + 8;
+    for (columns, found) in [(u32::MAX, "5 rows of 4294967295 cells"), (0, "5 rows of 0 cells")] {
+        let mut bytes = whole.clone();
+        bytes[first..first + 4].copy_from_slice(&columns.to_le_bytes());
+        let message = Raster::from_bytes(&path, bytes, None).unwrap_err().to_string();
+        assert!(message.contains(found) && message.contains("fetch it again"), "{message}");
+    }
+}

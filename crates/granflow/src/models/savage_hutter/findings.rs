@@ -39,8 +39,8 @@ fn unfinished(summary: &Summary) -> Option<String> {
     match summary.stop_reason {
         StopReason::AtRest | StopReason::Steady => None,
         StopReason::Trickle => Some(format!(
-            "{cells} cells with {share:.2} % of the volume still move, each of them as a trickle; nothing else has moved since \
-             {:.6}. time.trickle = 0 waits until they rest",
+            "a trickle still moves, thin or slow, through {cells} cells that hold {share:.2} % of the volume; nothing else has moved since \
+             {:.6}. time.trickle = 0 waits until it rests",
             summary.extra("flowed_until").unwrap_or(f64::NAN)
         )),
         reason => Some(format!(

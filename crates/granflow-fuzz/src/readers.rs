@@ -1,0 +1,197 @@
+//! What reads files of others, and valid files for it to begin with.
+
+use granflow_case::{Case, FileAccess, Formula, Outline};
+use granflow_geo::raster::Raster;
+use granflow_geo::release::{Layer, Thickness};
+use std::path::Path;
+
+/// A reader under test.
+#[derive(Debug)]
+pub struct Reader {
+    /// Its name.
+    pub name: &'static str,
+    /// Valid inputs.
+    pub seeds: fn() -> Vec<Vec<u8>>,
+    /// Reads an input; an error is as good as a result.
+    pub read: fn(&[u8]),
+}
+
+/// All readers.
+pub const READERS: [Reader; 9] = [
+    Reader { name: "formula", seeds: formulas, read: formula },
+    Reader { name: "case", seeds: cases, read: case },
+    Reader { name: "npy", seeds: arrays, read: |bytes| with_thickness("h.npy", bytes) },
+    Reader { name: "csv", seeds: tables, read: |bytes| with_thickness("h.csv", bytes) },
+    Reader { name: "asc", seeds: grids, read: raster },
+    Reader { name: "tif", seeds: images, read: raster },
+    Reader { name: "geojson", seeds: geojson, read: |bytes| layer(bytes, None) },
+    Reader { name: "shapefile", seeds: shapes, read: |bytes| layer(bytes, None) },
+    Reader { name: "dbf", seeds: attributes, read: |bytes| layer(&shapes()[0], Some(bytes)) },
+];
+
+fn texts(texts: &[&str]) -> Vec<Vec<u8>> {
+    texts.iter().map(|text| text.as_bytes().to_vec()).collect()
+}
+
+fn formulas() -> Vec<Vec<u8>> {
+    texts(&["max(1 - x^2, 0) + exp(-y)", "if(x < 1, -sin(pi*x)**2, 3e-2)", "((x))+--1^-2^y/atan2(x, y)"])
+}
+
+fn formula(bytes: &[u8]) {
+    let text = String::from_utf8_lossy(bytes);
+    match Formula::parse(&text, &["x", "y"]) {
+        Ok(formula) => drop(formula.at(&[0.5, -2.0])),
+        Err(error) => assert!(text.get(error.at..error.at + error.length).is_some(), "{error:?}"),
+    }
+}
+
+/// One file beside the case, whatever it is called.
+#[derive(Debug)]
+struct Beside<'a>(&'a [u8]);
+
+impl FileAccess for Beside<'_> {
+    fn outlines(&self, _path: &Path) -> Result<Box<dyn Outline>, String> {
+        Err("no polygons here".to_owned())
+    }
+    fn find(&self, _path: &Path) -> std::io::Result<()> {
+        Ok(())
+    }
+    fn bytes(&self, _path: &Path) -> std::io::Result<Vec<u8>> {
+        Ok(self.0.to_vec())
+    }
+    fn names(&self, _folder: &Path) -> Option<Vec<String>> {
+        Some(Vec::new())
+    }
+}
+
+fn cases() -> Vec<Vec<u8>> {
+    texts(&[
+        include_str!("../../../cases/silo.toml"),
+        include_str!("../../../cases/avalanche.toml"),
+        include_str!("../../../cases/plane.toml"),
+        include_str!("../../../cases/sandpile.toml"),
+        include_str!("../../../cases/sandpile_walls.toml"),
+        include_str!("../../../cases/silo_hole.toml"),
+        "model = \"savage_hutter\"\ngrid.x = { from = 0, to = 1, cells = 9 }\n\
+         material.friction.coulomb.mu = 0.3\ninitial.thickness.formula = \"x\"\n[time]\nuntil = \"rest\"\n",
+    ])
+}
+
+fn case(bytes: &[u8]) {
+    check(&String::from_utf8_lossy(bytes), &[]);
+}
+
+fn check(text: &str, beside: &[u8]) {
+    let checked = Case::parse(text, "a.toml").and_then(|case| {
+        drop((case.to_toml(), case.resolved(), case.text()));
+        case.check(&Beside(beside)).map(drop)
+    });
+    let Err(error) = checked else { return };
+    assert!(!error.to_string().is_empty());
+    if let Some(span) = error.span() {
+        assert!(error.text().get(span.clone()).is_some(), "{span:?} of {} bytes", error.text().len());
+    }
+}
+
+fn with_thickness(name: &str, bytes: &[u8]) {
+    let text = format!(
+        "model = \"savage_hutter\"\ntime.until = \"rest\"\nmaterial.friction.coulomb.mu = 0.3\n\
+         grid.x = {{ from = 0, to = 3, cells = 3 }}\ngrid.y = {{ from = 0, to = 2, cells = 2 }}\n\
+         initial.thickness.file = \"{name}\"\n"
+    );
+    check(&text, bytes);
+}
+
+fn arrays() -> Vec<Vec<u8>> {
+    ["<f8", ">f4"]
+        .map(|kind| {
+            let header = format!("{{'descr': '{kind}', 'fortran_order': False, 'shape': (2, 3), }}   \n");
+            let length = (header.len() as u16).to_le_bytes();
+            let numbers = if kind == "<f8" { vec![0; 48] } else { vec![0; 24] };
+            [b"\x93NUMPY\x01\0", &length[..], header.as_bytes(), &numbers].concat()
+        })
+        .to_vec()
+}
+
+fn tables() -> Vec<Vec<u8>> {
+    texts(&["# thickness\n1, 2, 3\n4, 5, 6\n", "1;2;3\n\n4\t5 6e-3"])
+}
+
+fn raster(bytes: &[u8]) {
+    if let Ok(raster) = Raster::from_bytes(Path::new("a.tif"), bytes.to_vec(), None) {
+        assert_eq!(raster.values.len(), raster.columns * raster.rows);
+    }
+}
+
+fn grids() -> Vec<Vec<u8>> {
+    texts(&[
+        "ncols 3\nnrows 2\nxllcorner 10\nyllcorner 20\ncellsize 2\nNODATA_value -1\n1 2 3\n4 nan -1\n",
+        "3 ncols\n2 nrows\n10 xllcenter\n20 yllcenter\n2 dx\n2 dy\n1,5 2 3\n4 5 6\n",
+        "ncols 1 nrows 1 xllcorner 0 yllcorner 0 cellsize 1e-3 nodata_value null\n1000\n",
+    ])
+}
+
+fn images() -> Vec<Vec<u8>> {
+    let folder = tempfile::tempdir().expect("a folder for the seeds");
+    let path = folder.path().join("a.tif");
+    let crs = granflow_geo::raster::Crs::parse("EPSG:31287").ok();
+    let write = |columns: usize, rows: usize, crs| {
+        let values = (0..columns * rows).map(|k| if k == 3 { f64::NAN } else { k as f64 }).collect();
+        let raster = Raster { columns, rows, west: 4e5, south: 3e5, cell: 5.0, values, crs };
+        raster.write_geotiff(&path).expect("the seed is valid");
+        std::fs::read(&path).expect("it was just written")
+    };
+    vec![write(5, 4, None), write(70, 3, crs)]
+}
+
+fn layer(bytes: &[u8], table: Option<&[u8]>) {
+    let Ok(layer) = Layer::from_bytes(Path::new("a.shp"), bytes, table, None) else { return };
+    let values = vec![0.0; 80];
+    let ground = Raster { columns: 10, rows: 8, west: 0.0, south: 0.0, cell: 1.0, values, crs: None };
+    drop(layer.notes(&ground));
+    drop(layer.clone().outlines());
+    drop(layer.clone().thickness(&Thickness::Attribute("d".into()), &ground));
+    drop(layer.thickness(&Thickness::Value(1.0), &ground));
+}
+
+fn geojson() -> Vec<Vec<u8>> {
+    texts(&[
+        r#"{"type":"Polygon","coordinates":[[[1,1],[7,1],[7,6],[1,6],[1,1]],[[2,2],[3,2],[3,3],[2,2]]]}"#,
+        r#"{"type":"FeatureCollection","crs":{"type":"name","properties":{"name":"urn:ogc:def:crs:EPSG::31287"}},
+         "features":[{"type":"Feature","properties":{"d":1.5},"geometry":{"type":"MultiPolygon","coordinates":
+         [[[[0.5,0.5],[4,1],[3,5.5],[0.5,0.5]]],[[[5,5],[6,5],[6,6],[5,5]]]]}},
+         {"type":"Feature","properties":{"d":2},"geometry":{"type":"GeometryCollection","geometries":
+         [{"type":"Polygon","coordinates":[[[2,1],[5,1],[5,4],[2,1]]]}]}}]}"#,
+    ])
+}
+
+/// Two triangles that overlap, as polygons of a shapefile (ESRI 1998).
+fn shapes() -> Vec<Vec<u8>> {
+    let corners = [[1.0, 1.0], [2.0, 7.0], [8.0, 1.0], [1.0, 1.0]];
+    let shape = |number: i32, shift: f64| {
+        let mut shape = 5i32.to_le_bytes().to_vec();
+        let bounds = [1.0, 1.0, 8.0, 7.0].map(|v: f64| v + shift);
+        bounds.iter().for_each(|v| shape.extend(v.to_le_bytes()));
+        [1i32, 4, 0].iter().for_each(|v| shape.extend(v.to_le_bytes()));
+        corners.iter().flatten().for_each(|v| shape.extend((v + shift).to_le_bytes()));
+        let head = [number, shape.len() as i32 / 2].map(i32::to_be_bytes).concat();
+        [head, shape].concat()
+    };
+    let body = [shape(1, 0.0), shape(2, 0.75)].concat();
+    let mut file = [0x0000_270a, 0, 0, 0, 0, 0, (100 + body.len() as i32) / 2].map(i32::to_be_bytes).concat();
+    [1000i32, 5].iter().for_each(|v| file.extend(v.to_le_bytes()));
+    [1.0, 1.0, 8.75, 7.75, 0.0, 0.0, 0.0, 0.0f64].iter().for_each(|v| file.extend(v.to_le_bytes()));
+    vec![[file, body].concat()]
+}
+
+fn attributes() -> Vec<Vec<u8>> {
+    let mut table = vec![3, 126, 1, 1, 2, 0, 0, 0, 65, 0, 9, 0];
+    table.resize(32, 0);
+    table.push(b'd');
+    table.resize(43, 0);
+    table.push(b'N');
+    table.resize(48, 0);
+    table.push(8);
+    table.resize(64, 0);
+    vec![[&table[..], b"\r 1.5     *2,5     \x1a"].concat()]
+}
