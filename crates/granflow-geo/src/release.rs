@@ -343,8 +343,18 @@ fn sound(path: &Path, feature: usize, polygons: Vec<Polygon>) -> Result<Vec<Poly
     }
 }
 
+/// A smaller polygon is none \[m\].
+const SMALLEST: f64 = 1e-9;
+
 /// What is wrong with the rings of a polygon, and the cure.
 fn crossing(polygon: &Polygon) -> Option<String> {
+    // The overlay scales a ring to its extent, and never ends on one of 1e-311 m.
+    let extent = polygon.bounding_rect().map_or(0.0, |rect| rect.width().max(rect.height()));
+    if extent < SMALLEST {
+        return Some(format!(
+            "its corners lie within {extent:e} m of each other: it encloses nothing; remove it"
+        ));
+    }
     let mut rings = std::iter::once(polygon.exterior()).chain(polygon.interiors());
     let finite = rings.all(|ring| ring.coords().all(|c| c.x.is_finite() && c.y.is_finite()));
     let (area, union) =
