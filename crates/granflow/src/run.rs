@@ -49,8 +49,6 @@ pub trait Run: Send + Sync {
     fn record(&self) -> &Record;
     /// The mass has a speed along its bed; else the largest speed of the totals is another quantity of the model.
     fn has_speed(&self) -> bool;
-    /// Thickness of a film: a thinner layer is held (units of the thickness).
-    fn film(&self) -> f64;
     /// Thickness that a layer must exceed to count in the maps of peaks and times (units of the thickness,
     /// normal to the bed); none where there are no such maps.
     fn threshold(&self) -> Option<f64> {

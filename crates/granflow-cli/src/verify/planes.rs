@@ -105,7 +105,7 @@ const STOKER: Benchmark = Benchmark {
     name: "I-Stoker",
     title: "Dam break onto a wet bed, no friction",
     about: "Water 1 m deep at x < 0, 0.1 m at x > 0; at 1 s. Exact: Stoker 1957, a fan, a constant state and a bore. \
-            Verfahren 2 to 4 are not positive behind the bore: they break off.",
+            Verfahren 2 to 4, which lose positivity, are left out.",
     pieces: |size| FLOW_STOKER.pieces(size),
     curves: curves(METRES, "Depth at 1 s on the finest grid."),
     errors: errors("m", "L1 error of h", "m²"),

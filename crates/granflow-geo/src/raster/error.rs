@@ -93,10 +93,8 @@ pub enum RasterError {
     },
     /// A map of the web: one metre on it is cos(latitude) metres.
     #[error(
-        "{path} is in {found}, where lengths are too long by 1/cos(latitude) ({percent:.0} % here); reproject with\n  \
-         gdalwarp -t_srs EPSG:{epsg} -tr {cell} {cell} -r bilinear {path} {stem}_metres.tif\n\
-         (EPSG:{epsg} is the UTM zone of its centre, the national system does as well)",
-        path = path.display(), stem = stem(path)
+        "{path} is in {found}, where lengths are too long by 1/cos(latitude) ({percent:.0} % here); {cure}",
+        path = path.display(), cure = reproject(path, *epsg, *cell)
     )]
     WebMap {
         /// The file.
@@ -126,10 +124,8 @@ pub enum RasterError {
     },
     /// The CRS is geographic: positions in degrees.
     #[error(
-        "{path} has its positions in degrees ({found}), granflow needs metres; reproject with\n  \
-         gdalwarp -t_srs EPSG:{epsg} -tr {cell} {cell} -r bilinear {path} {stem}_metres.tif\n\
-         (EPSG:{epsg} is the UTM zone of its centre, the national system does as well)",
-        path = path.display(), stem = stem(path)
+        "{path} has its positions in degrees ({found}), granflow needs metres; {cure}",
+        path = path.display(), cure = reproject(path, *epsg, *cell)
     )]
     Geographic {
         /// The file.
@@ -252,6 +248,16 @@ impl RasterError {
 fn utm(longitude: f64, latitude: f64) -> u32 {
     let zone = (((longitude + 180.0) / 6.0).floor().rem_euclid(60.0)) as u32 + 1;
     if latitude < 0.0 { 32700 + zone } else { 32600 + zone }
+}
+
+/// How a raster comes into a system in metres.
+fn reproject(path: &Path, epsg: u32, cell: f64) -> String {
+    format!(
+        "reproject with\n  gdalwarp -t_srs EPSG:{epsg} -tr {cell} {cell} -r bilinear {path} {stem}_metres.tif\n\
+         (EPSG:{epsg} is the UTM zone of its centre, the national system does as well)",
+        path = path.display(),
+        stem = stem(path)
+    )
 }
 
 fn stem(path: &Path) -> String {

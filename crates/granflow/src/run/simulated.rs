@@ -46,10 +46,6 @@ pub trait Physics<const D: usize>: Send + Sync + 'static {
     fn has_speed(&self) -> bool {
         true
     }
-    /// Thickness of a film: a thinner layer is held.
-    fn film(&self) -> f64 {
-        0.0
-    }
     /// Thickness that a layer must exceed to count in the maps of peaks and times (units of the thickness,
     /// normal to the bed).
     fn threshold(&self) -> f64 {
@@ -195,9 +191,6 @@ impl<const D: usize, P: Physics<D>> Run for Simulated<D, P> {
     }
     fn has_speed(&self) -> bool {
         self.physics.has_speed()
-    }
-    fn film(&self) -> f64 {
-        self.physics.film()
     }
     fn track_energy(&mut self) {
         if !std::mem::replace(&mut self.tracks_energy, true) {

@@ -68,9 +68,6 @@ where
         }
         fields
     }
-    fn film(&self) -> f64 {
-        self.film
-    }
     fn threshold(&self) -> f64 {
         self.threshold
     }
