@@ -77,15 +77,15 @@ macro_rules! kernel {
         $crate::kernel!($module: $scheme, $scheme, $scheme, clone);
     };
     // A type that depends on the dimension: in any, in one, in two, and the method that makes the latter of the first; with `scalar`
-    // the loops for one dimension are compiled for one cell at a time alone.
-    ($module:ident: $scheme:ty, $line:ty, $plane:ty, $made:ident $(, $scalar:ident)?) => {
+    // the loops for one dimension are compiled for one cell at a time alone, with `scalar; scalar` all of them.
+    ($module:ident: $scheme:ty, $line:ty, $plane:ty, $made:ident $(, $scalar:ident)? $(; $all:ident)?) => {
         #[doc(hidden)]
         mod $module {
             pub mod line {
                 $crate::contexts!($($scalar)?);
             }
             pub mod plane {
-                $crate::contexts!();
+                $crate::contexts!($($all)?);
             }
         }
         impl<const D: usize> $crate::kernel::Kernel<D> for $scheme {

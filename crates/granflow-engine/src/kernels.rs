@@ -5,7 +5,7 @@ pub use crate::kernel::Kernel;
 use granflow_model::hadeler_kuttler::scheme::HadelerKuttler;
 use granflow_model::savage_hutter::balanced::Balanced;
 use granflow_model::savage_hutter::energy_stable::EnergyStable;
-use granflow_model::savage_hutter::friction::Law;
+use granflow_model::savage_hutter::friction::{AnyLaw, Law};
 use granflow_model::savage_hutter::ground::{Chute, Terrain};
 use granflow_model::savage_hutter::kinetic::Kinetic;
 
@@ -21,5 +21,14 @@ crate::kernel!(
 crate::kernel!(
     energy_stable_terrain: EnergyStable<Law, Terrain<D, f64>>, EnergyStable<Law, Terrain<1, f64>>, EnergyStable<Law, Terrain<2, f64>>,
     over, scalar
+);
+// Laws with powers and iterations, and parameters that differ from cell to cell.
+crate::kernel!(
+    energy_stable_chute_any: EnergyStable<AnyLaw, Chute<D, f64>>, EnergyStable<AnyLaw, Chute<1, f64>>,
+    EnergyStable<AnyLaw, Chute<2, f64>>, over, scalar; scalar
+);
+crate::kernel!(
+    energy_stable_terrain_any: EnergyStable<AnyLaw, Terrain<D, f64>>, EnergyStable<AnyLaw, Terrain<1, f64>>,
+    EnergyStable<AnyLaw, Terrain<2, f64>>, over, scalar; scalar
 );
 crate::kernel!(hadeler_kuttler: HadelerKuttler);

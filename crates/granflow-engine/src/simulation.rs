@@ -3,6 +3,7 @@
 mod activity;
 mod advance;
 mod cells;
+mod change;
 mod error;
 mod forcing;
 mod ground;

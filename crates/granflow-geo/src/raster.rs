@@ -18,6 +18,7 @@ pub use error::RasterError;
 pub use system::Comparison;
 
 use declared::Declared;
+use system::Heights;
 
 use crate::Remark;
 use std::io::Read;
@@ -48,7 +49,7 @@ pub struct Raster {
 /// A raster as it was read, and what the reader decided: units converted, systems that could not be compared.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Reading {
-    /// Values in metres.
+    /// Values in metres, or plain numbers.
     pub raster: Raster,
     /// One sentence each, with the name of the file.
     pub notes: Vec<Remark>,
@@ -60,6 +61,22 @@ impl Reading {
     /// # Errors
     /// As [`Raster::read_in`].
     pub fn of(path: &Path, crs: Option<&Crs>) -> Result<Reading, RasterError> {
+        let (raster, declared, notes) = Self::stored(path, crs)?;
+        Reading::in_metres(path, raster, declared, crs, notes)
+    }
+
+    /// The same of numbers that are no heights, say coefficients of friction: a unit of heights is not applied.
+    ///
+    /// # Errors
+    /// As [`Raster::read_in`].
+    pub fn of_numbers(path: &Path, crs: Option<&Crs>) -> Result<Reading, RasterError> {
+        let (raster, declared, notes) = Self::stored(path, crs)?;
+        let declared = Declared { unit: None, heights: Some(Heights::Unit(1.0)), ..declared };
+        Reading::in_metres(path, raster, declared, crs, notes)
+    }
+
+    /// What is stored, and what is declared of it.
+    fn stored(path: &Path, crs: Option<&Crs>) -> Result<(Raster, Declared, Vec<Remark>), RasterError> {
         let mut magic = [0; 4];
         let file = std::fs::File::open(path).and_then(|mut file| file.read(&mut magic));
         file.map_err(|source| RasterError::Io { path: path.into(), source })?;
@@ -70,7 +87,7 @@ impl Reading {
         } else {
             ascii::read(path, beside, crs, &mut notes)?
         };
-        Reading::in_metres(path, raster, declared, crs, notes)
+        Ok((raster, declared, notes))
     }
 
     /// The raster with what is declared of its values applied, checked.
@@ -163,6 +180,13 @@ impl Raster {
     pub fn at(&self, column: usize, row: usize) -> f64 {
         assert!(column < self.columns, "column {column} of {}", self.columns);
         self.values[row * self.columns + column]
+    }
+
+    /// The value of the cell that holds a place, NaN for nodata and beyond the edges.
+    pub fn holding(&self, [x, y]: [f64; 2]) -> f64 {
+        let [column, row] = [(x - self.west) / self.cell, (y - self.south) / self.cell].map(f64::floor);
+        let inside = column >= 0.0 && row >= 0.0 && column < self.columns as f64 && row < self.rows as f64;
+        if inside { self.at(column as usize, row as usize) } else { f64::NAN }
     }
 
     /// Column and row of the cell at an index of [`Raster::values`].

@@ -7,6 +7,7 @@ mod outlines;
 mod sparse;
 mod table;
 mod vector;
+mod zones;
 
 pub use error::ReleaseError;
 pub use outlines::Outlines;
@@ -258,15 +259,8 @@ fn thickness_of(path: &Path, feature: &Feature, thickness: &Thickness) -> Result
     let (value, found, name) = match thickness {
         Thickness::Value(value) => (Some(*value), value.to_string(), "thickness"),
         Thickness::Attribute(name) => {
-            let same = |(other, _): &&(String, String)| other.eq_ignore_ascii_case(name);
-            let attributes = &feature.attributes;
-            let exact = attributes.iter().find(|(other, _)| other == name).or(attributes.iter().find(same));
-            let Some((name, text)) = exact else {
-                return Err(ReleaseError::attribute(path, name, attributes));
-            };
-            let text = text.trim();
-            let value = text.parse().ok().or_else(|| text.replacen(',', ".", 1).parse().ok());
-            (value, text.to_string(), name.as_str())
+            let (name, text, value) = attribute(path, feature, name)?;
+            (value, text.to_string(), name)
         }
     };
     match value.filter(|value: &f64| value.is_finite() && *value >= 0.0) {
@@ -276,6 +270,23 @@ fn thickness_of(path: &Path, feature: &Feature, thickness: &Thickness) -> Result
             Err(ReleaseError::Thickness { path, feature: feature.number, name, found })
         }
     }
+}
+
+/// An attribute of a feature as the file spells its name, its text, and the number that this is.
+fn attribute<'a>(
+    path: &Path,
+    feature: &'a Feature,
+    name: &str,
+) -> Result<(&'a str, &'a str, Option<f64>), ReleaseError> {
+    let same = |(other, _): &&(String, String)| other.eq_ignore_ascii_case(name);
+    let attributes = &feature.attributes;
+    let exact = attributes.iter().find(|(other, _)| other == name).or(attributes.iter().find(same));
+    let Some((name, text)) = exact else {
+        return Err(ReleaseError::attribute(path, name, attributes));
+    };
+    let text = text.trim();
+    let value = text.parse().ok().or_else(|| text.replacen(',', ".", 1).parse().ok());
+    Ok((name, text, value))
 }
 
 /// The parts of polygon `k` that polygons before it cover, each point once.

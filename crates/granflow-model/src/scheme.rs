@@ -63,9 +63,16 @@ impl<R: Real, P: Components<R>, const N: usize> Components<R> for [P; N] {
 }
 
 /// Implements [`Components`] for a struct, field by field in the order of the list, whatever their order in the struct:
-/// `components!([const D: usize, R: Real] Flow<D, R> { h: R, q: [R; D] });`
+/// `components!([const D: usize, R: Real] Flow<D, R> { h: R, q: [R; D] });`, or of single numbers
+/// `components!(Coulomb { mu: f64 });`
 #[macro_export]
 macro_rules! components {
+    ($name:ident { $($field:ident: $kind:ty),* $(,)? }) => {
+        const _: () = {
+            type R = f64;
+            $crate::components!([] $name { $($field: $kind),* });
+        };
+    };
     ([$($generics:tt)*] $name:ty { $($field:ident: $kind:ty),* $(,)? }) => {
         impl<$($generics)*> $crate::scheme::Components<R> for $name {
             const COUNT: usize = 0 $(+ <$kind as $crate::scheme::Components<R>>::COUNT)*;
@@ -238,6 +245,10 @@ pub trait Scheme<const D: usize, R: Real>: Copy + Send + Sync {
     /// model take it, as their papers do.
     const REFUSES_LONG_STEPS: bool = false;
 
+    /// What acts on a cell of which nothing else is said.
+    fn usual_forcing(&self) -> Self::Forcing {
+        Components::load(|_| R::zero())
+    }
     /// The Runge-Kutta method that the scheme is stepped by.
     fn stages(&self) -> Stages;
     /// The largest Courant number dt * [`Scheme::rate`] at which the scheme is known to be stable.

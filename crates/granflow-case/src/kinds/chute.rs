@@ -3,7 +3,7 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::avalanche::{self, EarthPressure, Friction, Material, Method, SchemeName};
+use super::avalanche::{self, EarthPressure, Friction, InSpace, Material, Method, SchemeName};
 use super::{About, Foreign, Kind, Written};
 use crate::boundary::{Boundary, Side};
 use crate::fault::CaseError;
@@ -180,6 +180,11 @@ impl Written for Words {
         let sides = grid.boundary.check(look, &cells)?;
         let (material, Columns { zeta, kappa }) = material.check(look, &cells.x)?;
         let stepping = scheme.check(look)?;
+        if let Some(InSpace { key, .. }) = material.in_space.first() {
+            let message = "a parameter that differs from place to place needs a [terrain]";
+            return Err(look.fault(key, message, "on a [grid] give one number"));
+        }
+        material.check_scheme(look, scheme.name)?;
         self.check_published(look, scheme.name)?;
         let ends = time.check(look, scheme.name, TRICKLE)?;
         let written = output.check(look, &ends, &WRITTEN)?;

@@ -130,6 +130,7 @@ impl Written for Words {
         }
         let material = material.check(look)?;
         let stepping = scheme.check(look)?;
+        material.check_scheme(look, scheme.name)?;
         let named = on_terrain(look, scheme.name)?;
         let ends = time.check(look, scheme.name, TRICKLE)?;
         let written = output.check(look, &ends, &WRITTEN)?;

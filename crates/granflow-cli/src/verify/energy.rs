@@ -5,7 +5,8 @@ use granflow::kernels::Kernel;
 use granflow::savage_hutter::Flow;
 use granflow::savage_hutter::energy_stable::EnergyStable;
 use granflow::savage_hutter::friction::{
-    CellByCell, Cohesion, Coulomb, HerschelBulkley, Law, MuI, PouliquenForterre, Quadratic, SamosAt, Voellmy,
+    AnyLaw, Cohesion, Coulomb, HerschelBulkley, Law, LocalFriction, MuI, Parameters, PouliquenForterre,
+    Quadratic, SamosAt, Voellmy,
 };
 use granflow::savage_hutter::ground::{Chute, Terrain};
 use granflow::scheme::Boundary;
@@ -17,7 +18,7 @@ use super::mountain::{Mountain, Roughness, energy};
 use super::scheme::{GRAVITY, failed, grid, plane};
 use crate::failure::Failure;
 
-type Run = Simulation<2, EnergyStable<Law, Terrain<2, f64>>>;
+type Run<F> = Simulation<2, EnergyStable<F, Terrain<2, f64>>>;
 
 /// The benchmark of this file.
 pub const BENCHMARK: Benchmark = Benchmark {
@@ -86,43 +87,56 @@ fn by(second: bool, size: Size) -> Result<Finding, Failure> {
     Ok(Finding { checks, ..Finding::default() })
 }
 
-fn laws(dice: &mut Dice) -> Law {
+fn laws(dice: &mut Dice) -> AnyLaw {
     let mu = [0.0, dice.between(0.0, 0.3), dice.between(0.3, 0.6)][(dice.roll() * 2.999) as usize];
     match (dice.roll() * 8.0) as usize {
-        0 => Law::Voellmy(Voellmy { mu, xi: dice.between(200.0, 3000.0), gravity: GRAVITY }),
-        1 => Law::Cohesion(Cohesion { mu, bond: dice.between(0.0, 5.0) }),
-        2 => Law::SamosAt(SamosAt { mu, bond: 0.0, rs0: 0.222, kappa: 0.43, r: 0.05, b: 4.13 }),
+        0 => AnyLaw::Voellmy(Voellmy { mu, xi: dice.between(200.0, 3000.0), gravity: GRAVITY }),
+        1 => AnyLaw::Cohesion(Cohesion { mu, bond: dice.between(0.0, 5.0) }),
+        2 => AnyLaw::SamosAt(SamosAt { mu, bond: 0.0, rs0: 0.222, kappa: 0.43, r: 0.05, b: 4.13 }),
         3 => {
             let granular = [mu, mu + dice.between(0.05, 0.4), mu + dice.between(0.0, 0.1)];
             let law = PouliquenForterre { mu: granular, length: 0.1, beta: 0.136, gamma: 1e-3 };
-            CellByCell::PouliquenForterre(law).into()
+            AnyLaw::PouliquenForterre(law)
         }
         4 => {
             let law = MuI { mu1: mu, mu2: mu + 0.3, i0: 0.3, grain: dice.between(1e-3, 0.1), phi: 0.6 };
-            CellByCell::MuI(law).into()
+            AnyLaw::MuI(law)
         }
         5 => {
             let (bond, consistency) = (dice.between(0.0, 2.0), dice.between(0.0, 0.2));
-            let n = dice.between(0.3, 2.0);
-            CellByCell::HerschelBulkley(HerschelBulkley { bond, consistency, n }).into()
+            let n = dice.between(0.2, 4.0);
+            AnyLaw::HerschelBulkley(HerschelBulkley { bond, consistency, n })
         }
         6 => {
             let (bond, viscosity) = (dice.between(0.0, 2.0), dice.between(0.0, 0.2));
             let manning = dice.between(0.0, 0.1);
             let law = Quadratic { bond, viscosity, k: 24.0, manning, gravity: GRAVITY };
-            CellByCell::Quadratic(law).into()
+            AnyLaw::Quadratic(law)
         }
-        _ => Law::Coulomb(Coulomb { mu }),
+        _ => AnyLaw::Coulomb(Coulomb { mu }),
     }
 }
 
+/// The law as the loops of all schemes have it, for half of those that they have.
+fn in_loops(law: AnyLaw, seed: u64) -> Option<Law> {
+    law.in_loops().filter(|_| seed % 2 == 0)
+}
+
+/// Parameters of a law in a cell: its first one, mu or the bond, from a third to three times that of the others.
+fn elsewhere(parameters: Parameters<f64>, dice: &mut Dice) -> Parameters<f64> {
+    parameters.with(0, parameters.get(0) * 3.0_f64.powf(dice.between(-1.0, 1.0)))
+}
+
 /// The scheme of first or second order.
-fn of_order<B>(second: bool, law: Law) -> EnergyStable<Law, B> {
+fn of_order<F, B>(second: bool, law: F) -> EnergyStable<F, B> {
     if second { EnergyStable::second(law, 1e-6) } else { EnergyStable::first(law, 1e-6) }
 }
 
 /// A run on a random mountain with a random release, moving or at rest.
-fn random(seed: u64, second: bool) -> Result<(Mountain, Run), Failure> {
+fn random<F: LocalFriction>(seed: u64, second: bool, law: F) -> Result<(Mountain, Run<F>), Failure>
+where
+    EnergyStable<F, Terrain<2, f64>>: Kernel<2, State = Flow<2, f64>, Ground = Terrain<2, f64>>,
+{
     let mut dice = Dice(seed ^ 0x5eed);
     let dx = dice.between(0.5, 10.0);
     let rough = Roughness {
@@ -147,7 +161,7 @@ fn random(seed: u64, second: bool) -> Result<(Mountain, Run), Failure> {
         .collect();
     let sheet: Grid<2> = grid(cells, [0.0; 2], dx, Boundary::Absorbing);
     let run = Simulation::new(
-        of_order(second, laws(&mut dice)),
+        of_order(second, law),
         sheet,
         StepSize::Courant(0.9),
         |index| mountain.ground(index),
@@ -160,9 +174,25 @@ fn random(seed: u64, second: bool) -> Result<(Mountain, Run), Failure> {
     Ok((mountain, run.map_err(failed)?))
 }
 
-/// 80 steps on a mountain.
+/// 80 steps on a mountain, under one law or with other parameters in each cell.
 fn mountain(seed: u64, second: bool, worst: &mut Worst) -> Result<(), Failure> {
-    let (mountain, mut run) = random(seed, second)?;
+    let mut dice = Dice(seed ^ 0x1a3);
+    let law = laws(&mut dice);
+    if let Some(law) = in_loops(law, seed) {
+        let (mountain, run) = random(seed, second, law)?;
+        return slide(&mountain, run, worst);
+    }
+    let (mountain, mut run) = random(seed, second, law)?;
+    if dice.roll() < 0.7 {
+        run.apply(|[i, j], own| elsewhere(own, &mut Dice(seed ^ (1009 * i + j) as u64)));
+    }
+    slide(&mountain, run, worst)
+}
+
+fn slide<F: LocalFriction>(mountain: &Mountain, mut run: Run<F>, worst: &mut Worst) -> Result<(), Failure>
+where
+    EnergyStable<F, Terrain<2, f64>>: Kernel<2, State = Flow<2, f64>, Ground = Terrain<2, f64>>,
+{
     if run.rate() == 0.0 {
         return Ok(()); // all of it lies on holes
     }
@@ -185,15 +215,34 @@ fn mountain(seed: u64, second: bool, worst: &mut Worst) -> Result<(), Failure> {
     Ok(())
 }
 
-/// Random layers on a chute between walls; the energy counts the fall from x = 0.
+/// Random layers on a chute between walls, under one law or another.
 fn chute<const D: usize>(cells: [usize; D], seed: u64, second: bool, worst: &mut Worst) -> Result<(), Failure>
 where
-    EnergyStable<Law, Chute<D, f64>>: Kernel<D, State = Flow<D, f64>, Ground = Chute<D, f64>, Forcing = ()>,
+    EnergyStable<Law, Chute<D, f64>>: Kernel<D, State = Flow<D, f64>, Ground = Chute<D, f64>>,
+    EnergyStable<AnyLaw, Chute<D, f64>>: Kernel<D, State = Flow<D, f64>, Ground = Chute<D, f64>>,
+{
+    let law = laws(&mut Dice(seed ^ 0x1a3));
+    match in_loops(law, seed) {
+        Some(law) => chute_under(law, cells, seed, second, worst),
+        None => chute_under(law, cells, seed, second, worst),
+    }
+}
+
+/// The energy counts the fall from x = 0.
+fn chute_under<F: LocalFriction, const D: usize>(
+    law: F,
+    cells: [usize; D],
+    seed: u64,
+    second: bool,
+    worst: &mut Worst,
+) -> Result<(), Failure>
+where
+    EnergyStable<F, Chute<D, f64>>: Kernel<D, State = Flow<D, f64>, Ground = Chute<D, f64>>,
 {
     let mut dice = Dice(seed ^ 0xc4073);
     let tilt: [f64; D] = std::array::from_fn(|_| dice.between(-0.6, 0.6));
     let ground = plane(tilt, dice.between(0.1, 1.0));
-    let scheme = of_order(second, laws(&mut dice));
+    let scheme = of_order(second, law);
     let deep = 10.0_f64.powf(dice.between(-3.0, 0.5));
     let sheet = grid(cells, [0.0; D], dice.between(0.02, 0.5), Boundary::Wall);
     let start = |index: [usize; D]| {

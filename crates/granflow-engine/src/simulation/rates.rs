@@ -24,23 +24,24 @@ impl<const D: usize, S: Scheme<D, f64>> Simulation<D, S> {
     }
     /// Rates and speeds of the state as it stands (needed once, before the first step or after a restart).
     pub(super) fn rescan(&mut self) {
-        let rescan = |number: usize| {
-            let mut stats = TileStats::NONE;
-            let mut square = 0.0;
-            self.visit(&self.tiles[number], |cell| {
-                let rate = self.scheme.rate(cell, &self.spacing);
-                stats.rate = if stats.rate < rate { rate } else { stats.rate };
-                square = self.scheme.diagnostics(cell).speed_squared.max(square);
-            });
-            stats.speed = square.sqrt();
-            stats
-        };
-        self.stats = parallel::map(self.tiles.len(), rescan);
+        self.stats = parallel::map(self.tiles.len(), |number| self.scanned_tile(number));
         // Nothing is known of the change before the next step.
         self.changes.fill(f64::INFINITY);
         self.outdated.fill(true);
         self.row_max.fill(TileRowMax { stale: true, ..TileRowMax::default() });
         self.find_rate();
+    }
+
+    /// The rate and the speed of a tile as it stands.
+    pub(super) fn scanned_tile(&self, number: usize) -> TileStats {
+        let (mut stats, mut square) = (TileStats::NONE, 0.0);
+        self.visit(&self.tiles[number], |cell| {
+            let rate = self.scheme.rate(cell, &self.spacing);
+            stats.rate = if stats.rate < rate { rate } else { stats.rate };
+            square = self.scheme.diagnostics(cell).speed_squared.max(square);
+        });
+        stats.speed = square.sqrt();
+        stats
     }
 
     /// max over cells of [`Scheme::rate`]: the Courant number of a step dt is dt times this.

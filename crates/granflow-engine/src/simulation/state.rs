@@ -132,6 +132,8 @@ impl<const D: usize, S: Scheme<D, f64>> Simulation<D, S> {
         let mut grounds = laid_out::<D, S::Ground>(&layout, ground);
         boundary::fill(&mut grounds, &grid, &layout, |axis, g| scheme.mirror_ground(axis, &g));
         let now = laid_out::<D, S::State>(&layout, initial);
+        let mut forcings = laid_out::<D, S::Forcing>(&layout, |_| scheme.usual_forcing());
+        boundary::fill(&mut forcings, &grid, &layout, |axis, f| scheme.mirror_forcing(axis, &f));
         let (tiles, across) = cut(&layout);
         let tracked = tracked::<D, S>();
         Ok(Simulation {
@@ -156,7 +158,7 @@ impl<const D: usize, S: Scheme<D, f64>> Simulation<D, S> {
             queued: vec![false; tiles.len()],
             found: vec![TileStats::NONE; tiles.len()],
             grounds,
-            forcings: Field::zeros::<S::Forcing>(&layout),
+            forcings,
             maps: None,
             time: 0.0,
             step: 0,

@@ -56,6 +56,22 @@ pub enum ReleaseError {
         /// All attributes and what else helps.
         available: String,
     },
+    /// An attribute that should hold a number holds none.
+    #[error(
+        "{path}, feature {feature}: {name} {}; give it one, or remove the feature",
+        if found.is_empty() { "is not given (NULL)".into() } else { format!("= `{found}` is not a number") },
+        path = path.display()
+    )]
+    Value {
+        /// The file.
+        path: PathBuf,
+        /// Number of the feature, from 1.
+        feature: usize,
+        /// The attribute.
+        name: String,
+        /// What it holds.
+        found: String,
+    },
     /// A thickness is negative or no number.
     #[error(
         "{path}, feature {feature}: {name} {}; allowed are numbers from 0 on, in metres: give it one, or thickness = 1.0 in \

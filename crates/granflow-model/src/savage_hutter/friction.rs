@@ -1,11 +1,13 @@
 //! Friction laws: what resists a moving mass, and what holds one at rest.
 
+mod any;
 mod coulomb;
 mod granular;
 mod samosat;
 mod voellmy;
 mod yielding;
 
+pub use any::{AnyLaw, Parameters};
 pub use coulomb::{Cohesion, Coulomb};
 pub use granular::{MuI, PouliquenForterre};
 pub use samosat::SamosAt;
@@ -13,6 +15,7 @@ pub use voellmy::Voellmy;
 pub use yielding::{HerschelBulkley, Quadratic};
 
 use crate::real::Real;
+use crate::scheme::Components;
 
 /// The resistance of one law, as accelerations along the bed.
 #[derive(Clone, Copy, Debug)]
@@ -27,11 +30,62 @@ pub struct Resistance<R> {
     pub holding: R,
 }
 
-/// A friction law.
+/// A friction law with the same parameters in all cells.
 pub trait Friction: Copy + Send + Sync + 'static {
     /// Resistance of a mass of `thickness` (normal to the bed) under the normal acceleration `load` in motion and
     /// `weight` at rest; `speed_squared` is the square of the speed along the bed.
     fn resistance<R: Real>(&self, thickness: R, speed_squared: R, load: R, weight: R) -> Resistance<R>;
+}
+
+/// Friction as a scheme asks for it in a cell: any [`Friction`], or a law with parameters of the cell ([`AnyLaw`]).
+pub trait LocalFriction: Copy + Send + Sync + 'static {
+    /// The parameters of a cell; `()` where they are the law's own.
+    type Parameters<R: Real>: Components<R>;
+
+    /// The parameters of a cell for which no others are given.
+    fn parameters<R: Real>(&self) -> Self::Parameters<R>;
+    /// [`Friction::resistance`] with the parameters `here`.
+    fn resistance_with<R: Real>(
+        &self,
+        here: &Self::Parameters<R>,
+        thickness: R,
+        speed_squared: R,
+        load: R,
+        weight: R,
+    ) -> Resistance<R>;
+    /// The share of `speed` that the parts of the resistance leave which grow with the speed, in a step of `dt`.
+    #[inline(always)]
+    fn kept<R: Real>(
+        &self,
+        _here: &Self::Parameters<R>,
+        law: &Resistance<R>,
+        _thickness: R,
+        speed: R,
+        dt: R,
+    ) -> R {
+        if !R::any(!(law.drag + law.viscous).equals(R::zero())) {
+            return R::splat(1.0);
+        }
+        kept(law.viscous, law.drag, speed, dt)
+    }
+}
+
+impl<F: Friction> LocalFriction for F {
+    type Parameters<R: Real> = ();
+
+    #[inline(always)]
+    fn parameters<R: Real>(&self) {}
+    #[inline(always)]
+    fn resistance_with<R: Real>(
+        &self,
+        _here: &(),
+        thickness: R,
+        speed_squared: R,
+        load: R,
+        weight: R,
+    ) -> Resistance<R> {
+        self.resistance(thickness, speed_squared, load, weight)
+    }
 }
 
 /// v/speed where v + dt (viscous v + drag v^2) = speed: what the parts that grow with the speed leave of it, implicitly.
@@ -41,7 +95,7 @@ pub(super) fn kept<R: Real>(viscous: R, drag: R, speed: R, dt: R) -> R {
     R::splat(2.0) / (one + (one * one + R::splat(4.0) * (dt * drag * speed)).sqrt())
 }
 
-/// A law that is known when a case has been read. One type for all, so that each scheme is built once, not once a law; in a
+/// A law that the loops of all schemes have. One type for all, so that each scheme is built once, not once a law; in a
 /// sweep the choice is the same for every cell and costs nothing.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Law {
@@ -53,56 +107,6 @@ pub enum Law {
     Cohesion(Cohesion),
     /// [`SamosAt`].
     SamosAt(SamosAt),
-    /// One that is computed cell by cell.
-    CellByCell(CellByCell),
-}
-
-/// The laws that are computed one cell after the other: their powers and iterations would crowd the loops of all other laws.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum CellByCell {
-    /// [`PouliquenForterre`].
-    PouliquenForterre(PouliquenForterre),
-    /// [`MuI`].
-    MuI(MuI),
-    /// [`HerschelBulkley`].
-    HerschelBulkley(HerschelBulkley),
-    /// [`Quadratic`].
-    Quadratic(Quadratic),
-}
-
-impl Law {
-    /// A part of the friction grows with the speed: it limits that of a thin layer, which therefore drains ever more slowly.
-    #[must_use]
-    pub fn has_drag(&self) -> bool {
-        match self {
-            Law::Coulomb(_) | Law::Cohesion(_) => false,
-            Law::Voellmy(_) | Law::SamosAt(_) | Law::CellByCell(_) => true,
-        }
-    }
-}
-
-impl From<CellByCell> for Law {
-    fn from(law: CellByCell) -> Law {
-        Law::CellByCell(law)
-    }
-}
-
-impl CellByCell {
-    /// The resistance of one cell as an array. (Cold, and with a body that the compiler of the loops sees: of a call that it knows
-    /// nothing of it would think that it changes what the loops hold in registers.)
-    #[cold]
-    #[inline]
-    fn of_one(&self, [thickness, speed_squared, load, weight]: [f64; 4]) -> [f64; 4] {
-        // No power of it overflows.
-        let thickness = thickness.max(1e-100);
-        let Resistance { dry, viscous, drag, holding } = match self {
-            CellByCell::PouliquenForterre(law) => law.resistance(thickness, speed_squared, load, weight),
-            CellByCell::MuI(law) => law.resistance(thickness, speed_squared, load, weight),
-            CellByCell::HerschelBulkley(law) => law.resistance(thickness, speed_squared, load, weight),
-            CellByCell::Quadratic(law) => law.resistance(thickness, speed_squared, load, weight),
-        };
-        [dry, viscous, drag, holding]
-    }
 }
 
 impl Friction for Law {
@@ -113,11 +117,6 @@ impl Friction for Law {
             Law::Voellmy(law) => law.resistance(thickness, speed_squared, load, weight),
             Law::Cohesion(law) => law.resistance(thickness, speed_squared, load, weight),
             Law::SamosAt(law) => law.resistance(thickness, speed_squared, load, weight),
-            Law::CellByCell(law) => {
-                let values = [thickness, speed_squared, load, weight];
-                let [dry, viscous, drag, holding] = R::each(values, |values| law.of_one(values));
-                Resistance { dry, viscous, drag, holding }
-            }
         }
     }
 }

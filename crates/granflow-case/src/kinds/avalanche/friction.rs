@@ -2,23 +2,37 @@
 
 use std::f64::consts::FRAC_PI_2;
 
-use granflow_model::savage_hutter::friction as law;
+use granflow_model::savage_hutter::friction::{AnyLaw, Law};
+use granflow_model::scheme::Components;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
+mod laws;
+mod parameter;
+
+use laws::{
+    Bingham, Cohesion, Coulomb, HerschelBulkley, MuI, PouliquenForterre, Quadratic, Samosat, Voellmy,
+};
+use parameter::{Number, Parameter};
+
+pub use parameter::{ByElevation, InSpace, Place, Range};
+
+use super::scheme::SchemeName;
 use crate::fault::CaseError;
 use crate::look::Look;
 use crate::units::{Angle, RADIANS};
 
 /// What flows and what holds it back, in plain numbers.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, PartialEq)]
 pub struct Material {
     /// Name of the friction law, as the case file writes it.
     pub friction: &'static str,
     /// Coefficient of the friction that grows with the load, mu = tan(delta).
     pub mu: f64,
-    /// The friction law.
-    pub law: law::Law,
+    /// The friction law; a parameter that differs from place to place has a number that stands in for it.
+    pub law: AnyLaw,
+    /// The parameters that differ from place to place.
+    pub in_space: Vec<InSpace>,
     /// The earth-pressure coefficient k.
     pub pressure_coefficient: f64,
     /// Gravity g: m/s^2 on terrain, 1 where times are scaled by sqrt(L/g).
@@ -51,6 +65,7 @@ pub(crate) enum Friction {
     /// samosAT, the default law of AvaFrame: [tau0 + mu sigma (1 + rs0/(rs0 + Rs)) + rho |V|^2/(ln(h/r)/kappa + b)^2]/(rho h).
     Samosat(Samosat),
     /// Pouliquen & Forterre (2002): starts above one thickness, stops below a smaller one.
+    #[serde(rename = "pouliquen", alias = "pouliquen_forterre")]
     PouliquenForterre(PouliquenForterre),
     /// mu(I), averaged over the depth (Gray & Edwards 2014).
     MuI(MuI),
@@ -62,158 +77,26 @@ pub(crate) enum Friction {
     Quadratic(Quadratic),
 }
 
-/// Pouliquen & Forterre's law; its values for glass beads of 0.5 mm are mu1 = 0.384, mu2 = 0.594, mu3 = 0.408, length = 6.5e-4.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub(crate) struct PouliquenForterre {
-    /// Tangent of the angle at which thick layers stop.
-    pub mu1: f64,
-    /// Tangent of the angle above which none stops.
-    pub mu2: f64,
-    /// Tangent of the angle at which thick layers start.
-    pub mu3: f64,
-    /// Length L over which the thickness matters, in m.
-    pub length: f64,
-    /// Froude number of the thinnest uniform flow (default 0.136).
-    #[serde(default = "beta")]
-    pub beta: f64,
-    /// Exponent of slow flow (default 1e-3).
-    #[serde(default = "gamma")]
-    pub gamma: f64,
-}
+impl Material {
+    /// The law with one set of parameters for all cells, as the loops of all schemes have it; none for another one.
+    #[must_use]
+    pub fn law_in_loops(&self) -> Option<Law> {
+        if self.in_space.is_empty() { self.law.in_loops() } else { None }
+    }
 
-fn beta() -> f64 {
-    0.136
-}
-
-fn gamma() -> f64 {
-    1e-3
-}
-
-/// The law mu(I).
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub(crate) struct MuI {
-    /// mu of slow flow.
-    pub mu1: f64,
-    /// mu of fast flow.
-    pub mu2: f64,
-    /// Inertial number half way between them.
-    pub i0: f64,
-    /// Diameter of the grains in m.
-    pub grain: f64,
-    /// Share of the volume that the grains fill (default 0.6).
-    #[serde(default = "phi")]
-    pub phi: f64,
-}
-
-fn phi() -> f64 {
-    0.6
-}
-
-/// Bingham's law.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub(crate) struct Bingham {
-    /// Yield stress tau0 in Pa.
-    pub tau0: f64,
-    /// Viscosity eta in Pa s.
-    pub eta: f64,
-}
-
-/// Herschel and Bulkley's law.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub(crate) struct HerschelBulkley {
-    /// Yield stress tau0 in Pa.
-    pub tau0: f64,
-    /// Consistency k in Pa s^n.
-    pub k: f64,
-    /// Exponent n, from 0.3 to 1.5.
-    pub n: f64,
-}
-
-/// The quadratic law of mud and debris.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub(crate) struct Quadratic {
-    /// Yield stress tau0 in Pa.
-    pub tau0: f64,
-    /// Viscosity eta in Pa s.
-    pub eta: f64,
-    /// Resistance parameter K of laminar flow (default 24, a wide smooth bed).
-    #[serde(default = "wide")]
-    pub k: f64,
-    /// Manning's n in s/m^(1/3) (default 0).
-    #[serde(default)]
-    pub manning: f64,
-}
-
-fn wide() -> f64 {
-    24.0
-}
-
-/// Coulomb friction; give `angle` or `mu`.
-#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub(crate) struct Coulomb {
-    /// Friction angle delta, mu = tan(delta).
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub angle: Option<Angle>,
-    /// Friction coefficient mu.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub mu: Option<f64>,
-}
-
-/// Voellmy friction; give `angle` or `mu`.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub(crate) struct Voellmy {
-    /// Friction angle delta, mu = tan(delta).
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub angle: Option<Angle>,
-    /// Friction coefficient mu.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub mu: Option<f64>,
-    /// Turbulent friction xi in m/s^2.
-    pub xi: f64,
-}
-
-/// Coulomb friction with cohesion; give `angle` or `mu`.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub(crate) struct Cohesion {
-    /// Friction angle delta, mu = tan(delta).
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub angle: Option<Angle>,
-    /// Friction coefficient mu.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub mu: Option<f64>,
-    /// Cohesion tau0 in Pa.
-    pub tau0: f64,
-}
-
-/// The samosAT law with AvaFrame's default values.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields, default)]
-pub(crate) struct Samosat {
-    /// Friction coefficient mu (default 0.155).
-    pub mu: f64,
-    /// Yield stress tau0 in Pa (default 0).
-    pub tau0: f64,
-    /// Constant Rs0 of the fluidisation factor (default 0.222).
-    pub rs0: f64,
-    /// Karman constant kappa (default 0.43).
-    pub kappa: f64,
-    /// Roughness length R in m (default 0.05).
-    pub r: f64,
-    /// Constant B of the logarithmic profile (default 4.13).
-    pub b: f64,
-}
-
-impl Default for Samosat {
-    fn default() -> Self {
-        Self { mu: 0.155, tau0: 0.0, rs0: 0.222, kappa: 0.43, r: 0.05, b: 4.13 }
+    /// A law that is computed cell by cell needs a scheme that does so.
+    pub(crate) fn check_scheme(&self, look: &Look, scheme: SchemeName) -> Result<(), CaseError> {
+        if self.law_in_loops().is_some()
+            || matches!(scheme, SchemeName::EnergyStable | SchemeName::EnergyStable2)
+        {
+            return Ok(());
+        }
+        let what = match self.in_space.first() {
+            Some(parameter) => format!("{} differs from place to place", parameter.key),
+            None => format!("the law {} is computed cell by cell", self.friction),
+        };
+        let message = format!("{what}, which {} cannot compute", scheme.as_str());
+        Err(look.fault("scheme.name", message, "use energy_stable or energy_stable_2, which can"))
     }
 }
 
@@ -235,7 +118,7 @@ impl Friction {
             Self::Voellmy(_) => "voellmy",
             Self::Cohesion(_) => "cohesion",
             Self::Samosat(_) => "samosat",
-            Self::PouliquenForterre(_) => "pouliquen_forterre",
+            Self::PouliquenForterre(_) => "pouliquen",
             Self::MuI(_) => "mu_i",
             Self::Bingham(_) => "bingham",
             Self::HerschelBulkley(_) => "herschel_bulkley",
@@ -251,121 +134,80 @@ impl Friction {
         gravity: f64,
         density: f64,
     ) -> Result<Material, CaseError> {
-        let mu = self.check(look)?;
-        let law = match self {
-            Self::Coulomb(_) => law::Law::Coulomb(law::Coulomb { mu }),
-            Self::Voellmy(law) => law::Law::Voellmy(law::Voellmy { mu, xi: law.xi, gravity }),
-            Self::Cohesion(law) => law::Law::Cohesion(law::Cohesion { mu, bond: law.tau0 / density }),
-            Self::Samosat(Samosat { tau0, rs0, kappa, r, b, .. }) => {
-                let bond = tau0 / density;
-                law::Law::SamosAt(law::SamosAt { mu, bond, rs0: *rs0, kappa: *kappa, r: *r, b: *b })
+        let numbers = self.numbers(look, gravity, density)?;
+        let first = numbers[0].given.map_or(numbers[0].per, |(_, value, _)| value.usual());
+        let mut in_space = Vec::new();
+        let mut of_law = Vec::new();
+        for (index, Number { given, per }) in numbers.into_iter().enumerate() {
+            let Some((key, value, range)) = given else {
+                of_law.push(per);
+                continue;
+            };
+            let key = format!("material.friction.{}.{key}", self.name());
+            match value.place(look, &key, range)? {
+                Some(place) => in_space.push(InSpace { index, key, place, range, per }),
+                // Compared with a first parameter that differs from place to place once that is read.
+                None if in_space.first().is_some_and(|first| first.index == 0) && range.of_first() => {}
+                None => look.number(&key, value.usual(), |v| range.fits(v, first), &range.allowed())?,
             }
-            Self::PouliquenForterre(PouliquenForterre { mu1, mu2, mu3, length, beta, gamma }) => {
-                let mu = [*mu1, *mu2, *mu3];
-                let law = law::PouliquenForterre { mu, length: *length, beta: *beta, gamma: *gamma };
-                law::CellByCell::PouliquenForterre(law).into()
-            }
-            Self::MuI(MuI { mu1, mu2, i0, grain, phi }) => {
-                law::CellByCell::MuI(law::MuI { mu1: *mu1, mu2: *mu2, i0: *i0, grain: *grain, phi: *phi })
-                    .into()
-            }
-            Self::Bingham(Bingham { tau0, eta }) => law::CellByCell::HerschelBulkley(law::HerschelBulkley {
-                bond: tau0 / density,
-                consistency: eta / density,
-                n: 1.0,
-            })
-            .into(),
-            Self::HerschelBulkley(HerschelBulkley { tau0, k, n }) => {
-                let (bond, consistency) = (tau0 / density, k / density);
-                law::CellByCell::HerschelBulkley(law::HerschelBulkley { bond, consistency, n: *n }).into()
-            }
-            Self::Quadratic(Quadratic { tau0, eta, k, manning }) => {
-                law::CellByCell::Quadratic(law::Quadratic {
-                    bond: tau0 / density,
-                    viscosity: eta / density,
-                    k: *k,
-                    manning: *manning,
-                    gravity,
-                })
-                .into()
-            }
-        };
-        let pressure_coefficient = pressure.coefficient(mu);
-        Ok(Material { friction: self.name(), mu, law, pressure_coefficient, gravity, density })
-    }
-
-    /// The ranges of the law's numbers; its mu = tan(delta).
-    fn check(&self, look: &Look) -> Result<f64, CaseError> {
-        let at = format!("material.friction.{}", self.name());
-        let key = |name: &str| format!("{at}.{name}");
-        let mu = match self {
-            Self::Coulomb(Coulomb { angle, mu })
-            | Self::Voellmy(Voellmy { angle, mu, .. })
-            | Self::Cohesion(Cohesion { angle, mu, .. }) => self.coefficient(look, *angle, *mu)?,
-            Self::Samosat(law) => self.coefficient(look, None, Some(law.mu))?,
-            Self::PouliquenForterre(law) => law.mu1,
-            Self::MuI(law) => law.mu1,
-            Self::Bingham(_) | Self::HerschelBulkley(_) | Self::Quadratic(_) => 0.0,
-        };
-        self.check_numbers(look, key)?;
-        Ok(mu)
-    }
-
-    /// The ranges of the numbers of a law beside mu or an angle; `key` gives the key of one by its name.
-    fn check_numbers(&self, look: &Look, key: impl Fn(&str) -> String) -> Result<(), CaseError> {
-        match self {
-            Self::Coulomb(_) => {}
-            Self::Voellmy(law) => look.positive(&key("xi"), Some(law.xi))?,
-            Self::Cohesion(law) => look.not_negative(&key("tau0"), Some(law.tau0))?,
-            Self::Samosat(law) => {
-                look.not_negative(&key("tau0"), Some(law.tau0))?;
-                look.not_negative(&key("rs0"), Some(law.rs0))?;
-                look.positive(&key("kappa"), Some(law.kappa))?;
-                look.positive(&key("r"), Some(law.r))?;
-                look.positive(&key("b"), Some(law.b))?;
-            }
-            Self::PouliquenForterre(law) => {
-                look.not_negative(&key("mu1"), Some(law.mu1))?;
-                let above = |mu: f64| mu > law.mu1 && mu.is_finite();
-                look.number(&key("mu2"), law.mu2, above, "a number above mu1")?;
-                let between = |mu: f64| mu >= law.mu1 && mu.is_finite();
-                look.number(&key("mu3"), law.mu3, between, "a number not below mu1")?;
-                look.positive(&key("length"), Some(law.length))?;
-                look.positive(&key("beta"), Some(law.beta))?;
-                look.positive(&key("gamma"), Some(law.gamma))?;
-            }
-            Self::MuI(law) => {
-                look.not_negative(&key("mu1"), Some(law.mu1))?;
-                let above = |mu: f64| mu > law.mu1 && mu.is_finite();
-                look.number(&key("mu2"), law.mu2, above, "a number above mu1")?;
-                look.positive(&key("i0"), Some(law.i0))?;
-                look.positive(&key("grain"), Some(law.grain))?;
-                let share = |phi: f64| phi > 0.0 && phi <= 1.0;
-                look.number(&key("phi"), law.phi, share, "a share above 0, at most 1")?;
-            }
-            Self::Bingham(law) => {
-                look.not_negative(&key("tau0"), Some(law.tau0))?;
-                look.positive(&key("eta"), Some(law.eta))?;
-            }
-            Self::HerschelBulkley(law) => {
-                look.not_negative(&key("tau0"), Some(law.tau0))?;
-                look.positive(&key("k"), Some(law.k))?;
-                // The viscosity of a step is that of the speed before: beyond 2 that does not settle.
-                let usual = |n: f64| (0.3..=1.5).contains(&n);
-                look.number(&key("n"), law.n, usual, "an exponent from 0.3 to 1.5")?;
-            }
-            Self::Quadratic(law) => {
-                look.not_negative(&key("tau0"), Some(law.tau0))?;
-                look.not_negative(&key("eta"), Some(law.eta))?;
-                look.not_negative(&key("k"), Some(law.k))?;
-                look.not_negative(&key("manning"), Some(law.manning))?;
-            }
+            of_law.push(value.usual() / per);
         }
-        Ok(())
+        let mu = if self.has_mu() { first } else { 0.0 };
+        let (law, pressure_coefficient) = (self.law(&of_law), pressure.coefficient(mu));
+        Ok(Material { friction: self.name(), mu, law, in_space, pressure_coefficient, gravity, density })
+    }
+
+    /// Does the friction grow with the load, by the first number?
+    fn has_mu(&self) -> bool {
+        !matches!(self, Self::Bingham(_) | Self::HerschelBulkley(_) | Self::Quadratic(_))
+    }
+
+    /// The numbers of the law in the order in which the model has them.
+    fn numbers(&self, look: &Look, gravity: f64, density: f64) -> Result<Vec<Number<'_>>, CaseError> {
+        Ok(match self {
+            Self::Coulomb(Coulomb { angle, mu }) => vec![self.coefficient(look, *angle, mu.as_ref())?],
+            Self::Voellmy(Voellmy { angle, mu, xi }) => vec![
+                self.coefficient(look, *angle, mu.as_ref())?,
+                Number::of("xi", xi, Range::Positive),
+                Number::fixed(gravity),
+            ],
+            Self::Cohesion(Cohesion { angle, mu, tau0 }) => vec![
+                self.coefficient(look, *angle, mu.as_ref())?,
+                Number::of("tau0", tau0, Range::NotNegative).per(density),
+            ],
+            Self::Samosat(law) => law.numbers(density),
+            Self::PouliquenForterre(law) => law.numbers(),
+            Self::MuI(law) => law.numbers(),
+            Self::Bingham(law) => law.numbers(density),
+            Self::HerschelBulkley(law) => law.numbers(density),
+            Self::Quadratic(law) => law.numbers(gravity, density),
+        })
+    }
+
+    /// The law of these numbers.
+    fn law(&self, numbers: &[f64]) -> AnyLaw {
+        fn of<L: Components<f64>>(numbers: &[f64]) -> L {
+            L::load(|k| numbers[k])
+        }
+        match self {
+            Self::Coulomb(_) => AnyLaw::Coulomb(of(numbers)),
+            Self::Voellmy(_) => AnyLaw::Voellmy(of(numbers)),
+            Self::Cohesion(_) => AnyLaw::Cohesion(of(numbers)),
+            Self::Samosat(_) => AnyLaw::SamosAt(of(numbers)),
+            Self::PouliquenForterre(_) => AnyLaw::PouliquenForterre(of(numbers)),
+            Self::MuI(_) => AnyLaw::MuI(of(numbers)),
+            Self::Bingham(_) | Self::HerschelBulkley(_) => AnyLaw::HerschelBulkley(of(numbers)),
+            Self::Quadratic(_) => AnyLaw::Quadratic(of(numbers)),
+        }
     }
 
     /// mu from exactly one of the two ways to write it.
-    fn coefficient(&self, look: &Look, angle: Option<Angle>, mu: Option<f64>) -> Result<f64, CaseError> {
+    fn coefficient<'a>(
+        &'a self,
+        look: &Look,
+        angle: Option<Angle>,
+        mu: Option<&'a Parameter>,
+    ) -> Result<Number<'a>, CaseError> {
         let name = self.name();
         let at = format!("material.friction.{name}");
         match (angle, mu) {
@@ -384,9 +226,9 @@ impl Friction {
                 let fits = |v: f64| (0.0..FRAC_PI_2).contains(&v);
                 look.number(&format!("{at}.angle"), angle.radians(), fits, allowed)
                     .map_err(|error| error.help(RADIANS))?;
-                Ok(angle.radians().tan())
+                Ok(Number::fixed(angle.radians().tan()))
             }
-            (None, Some(mu)) => look.not_negative(&format!("{at}.mu"), Some(mu)).map(|()| mu),
+            (None, Some(mu)) => Ok(Number::of("mu", mu, Range::NotNegative)),
         }
     }
 }

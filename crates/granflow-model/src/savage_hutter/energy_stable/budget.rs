@@ -48,9 +48,9 @@ impl<const D: usize, R: Real> Gives<D, R> {
 
     /// What it can pay for: the kinetic energy of what stays, on which the predicted inflow draws.
     #[inline(always)]
-    pub(super) fn budget<B: Bed<D, R>, T: EndsOf<D, R>>(
+    pub(super) fn budget<B: Bed<D, R>, P: Copy, T: EndsOf<D, R>>(
         &self,
-        near: &Neighbours<D, R, Flow<D, R>, B>,
+        near: &Neighbours<D, R, Flow<D, R>, B, P>,
         sides: &[Sides<R>; D],
         offer: &mut FaceStatesOf<D, R, B, T>,
     ) {

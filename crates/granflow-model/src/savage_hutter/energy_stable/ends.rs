@@ -145,8 +145,8 @@ pub(super) struct Slopes<const D: usize, R: Real> {
 impl<const D: usize, R: Real> Slopes<D, R> {
     /// Of the cell in the middle with velocity `u`; `there` are the velocities of its neighbours, lower first.
     #[inline(always)]
-    pub(super) fn of<B: Bed<D, R>>(
-        near: &Neighbours<D, R, Flow<D, R>, B>,
+    pub(super) fn of<B: Bed<D, R>, P: Copy>(
+        near: &Neighbours<D, R, Flow<D, R>, B, P>,
         sides: &[Sides<R>; D],
         (u, there): ([R; D], [[[R; D]; 2]; D]),
         lambda: [R; D],
@@ -184,9 +184,9 @@ impl<const D: usize, R: Real> Slopes<D, R> {
 
     /// With the velocity `w` after force and friction; none where the cell stops.
     #[inline(always)]
-    pub(super) fn with<B: Bed<D, R>>(
+    pub(super) fn with<B: Bed<D, R>, P: Copy>(
         &self,
-        near: &Neighbours<D, R, Flow<D, R>, B>,
+        near: &Neighbours<D, R, Flow<D, R>, B, P>,
         plane: &B::Plane,
         [u, w]: [[R; D]; 2],
         stops: R::Mask,

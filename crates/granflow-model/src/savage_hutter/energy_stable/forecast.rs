@@ -3,7 +3,7 @@
 use super::variant::EnergyStable;
 use crate::real::{Real, per_axis, total};
 use crate::savage_hutter::Flow;
-use crate::savage_hutter::friction::Friction;
+use crate::savage_hutter::friction::LocalFriction;
 use crate::savage_hutter::ground::Bed;
 use crate::scheme::{Cell, Components, Stencil, components};
 
@@ -79,11 +79,11 @@ pub struct Forecast<const D: usize, R: Real, S> {
 
 components!([const D: usize, R: Real, S: Components<R>] Forecast<D, R, S> { u: [R; D], surface: S, gain: R, motion: Motion<R> });
 
-impl<F: Friction, B: Copy, const ORDER: u8> EnergyStable<F, B, ORDER> {
+impl<F: LocalFriction, B: Copy, const ORDER: u8> EnergyStable<F, B, ORDER> {
     #[inline(always)]
     pub(super) fn is_dry<const D: usize, R: Real>(
         &self,
-        Cell { state, ground, .. }: &Cell<Flow<D, R>, B>,
+        Cell { state, ground, .. }: &Cell<Flow<D, R>, B, F::Parameters<R>>,
     ) -> R::Mask
     where
         B: Bed<D, R>,
@@ -99,7 +99,7 @@ impl<F: Friction, B: Copy, const ORDER: u8> EnergyStable<F, B, ORDER> {
     #[inline(always)]
     pub(super) fn foresee<const D: usize, R: Real>(
         &self,
-        stencil: &impl Stencil<D, R, Flow<D, R>, B>,
+        stencil: &impl Stencil<D, R, Flow<D, R>, B, F::Parameters<R>>,
         dt: R,
     ) -> Forecast<D, R, B::Surface>
     where
@@ -107,14 +107,14 @@ impl<F: Friction, B: Copy, const ORDER: u8> EnergyStable<F, B, ORDER> {
     {
         let near = stencil.star();
         let (zero, one) = (R::zero(), R::splat(1.0));
-        let Cell { state: Flow { h, q }, ground, .. } = near.here;
-        let bed = ground.exact();
-        let u = near.here.state.velocity();
+        let here = Cell { ground: near.here.ground.exact(), ..near.here };
+        let Cell { state: Flow { h, q }, ground: bed, .. } = here;
+        let u = here.state.velocity();
         let (dry, still) = (self.is_dry(&near.here), near.here.state.is_still());
         let shut = R::select(bed.is_nodata(), R::splat(Motion::<R>::OUTSIDE), R::splat(Motion::<R>::DRY));
         let mut code = shut;
         if R::any(!dry) {
-            let law = self.resistance(&bed, h, u, near.spacing.inv);
+            let law = self.resistance(&here, u, near.spacing.inv);
             let loss = dt * law.dry * R::splat(STEPS_TO_STOP);
             let (none, square) = (loss.le(zero), bed.square(u));
             code = one;

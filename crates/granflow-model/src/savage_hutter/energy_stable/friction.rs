@@ -2,32 +2,47 @@
 
 use super::variant::EnergyStable;
 use crate::real::{Real, largest, per_axis};
-use crate::savage_hutter::friction::{Friction, Resistance, kept};
+use crate::savage_hutter::Flow;
+use crate::savage_hutter::friction::{LocalFriction, Resistance};
 use crate::savage_hutter::ground::Bed;
+use crate::scheme::Cell;
 
 /// What friction leaves of a velocity is rounding below this share of what it takes.
 const ROUNDING: f64 = 1e-12;
 
-impl<F: Friction, B, const ORDER: u8> EnergyStable<F, B, ORDER> {
+impl<F: LocalFriction, B, const ORDER: u8> EnergyStable<F, B, ORDER> {
     /// A pull this much above the static bound still counts as held.
     const SLACK: f64 = 1.0 + 1e-10;
 
-    /// The resistance of a cell of depth `h` and velocity `u`, the static bound with slack and rounding; `per` is 1/dx.
+    /// The resistance of a cell at velocity `u`, the static bound with slack and rounding; `per` is 1/dx. Its ground is [`Bed::exact`].
     #[inline(always)]
     pub(super) fn resistance<const D: usize, R: Real>(
         &self,
-        bed: &B,
-        h: R,
+        Cell { state: Flow { h, .. }, ground: bed, forcing }: &Cell<Flow<D, R>, B, F::Parameters<R>>,
         u: [R; D],
         per: [R; D],
     ) -> Resistance<R>
     where
         B: Bed<D, R>,
     {
-        let thickness = bed.thickness(h).max(R::splat(f64::MIN_POSITIVE));
-        let law =
-            self.friction.resistance(thickness, bed.square(u), bed.normal_load(u), bed.weight_at_rest());
-        Resistance { holding: law.holding * R::splat(Self::SLACK) + bed.rounding(h, largest(per)), ..law }
+        let (square, load) = (bed.square(u), bed.normal_load(u));
+        let law = self.friction.resistance_with(
+            forcing,
+            Self::thickness(bed, *h),
+            square,
+            load,
+            bed.weight_at_rest(),
+        );
+        Resistance { holding: law.holding * R::splat(Self::SLACK) + bed.rounding(*h, largest(per)), ..law }
+    }
+
+    /// The thickness that the law is asked about.
+    #[inline(always)]
+    fn thickness<const D: usize, R: Real>(bed: &B, h: R) -> R
+    where
+        B: Bed<D, R>,
+    {
+        bed.thickness(h).max(R::splat(f64::MIN_POSITIVE))
     }
 
     /// What friction leaves of `pushed`; exactly 0 where it stops the cell, or leaves no more than an acceleration `idle` or than its
@@ -35,8 +50,10 @@ impl<F: Friction, B, const ORDER: u8> EnergyStable<F, B, ORDER> {
     /// takes half of the speed.
     #[inline(always)]
     pub(super) fn slowed<const D: usize, R: Real>(
+        &self,
+        Cell { state, ground, forcing }: &Cell<Flow<D, R>, B, F::Parameters<R>>,
         plane: &B::Plane,
-        Resistance { dry, viscous, drag, .. }: Resistance<R>,
+        law: Resistance<R>,
         idle: R,
         pushed: [R; D],
         ahead: Option<(R::Mask, [R; D])>,
@@ -47,6 +64,7 @@ impl<F: Friction, B, const ORDER: u8> EnergyStable<F, B, ORDER> {
     {
         let (zero, one) = (R::zero(), R::splat(1.0));
         let size = B::square_in(plane, pushed).sqrt();
+        let dry = law.dry;
         let loss = dt * dry;
         let left = size - loss;
         let stops = left.le(dt * idle.max(dry * R::splat(ROUNDING)));
@@ -63,10 +81,8 @@ impl<F: Friction, B, const ORDER: u8> EnergyStable<F, B, ORDER> {
             let turns = smooth & !none;
             slowed = per_axis!(k => R::select(turns, pushed[k] - share * along[k], slowed[k]));
         }
-        let mut keep = one;
-        if R::any(!(drag + viscous).equals(zero)) {
-            keep = kept(viscous, drag, R::select(stops, zero, left), dt);
-        }
+        let thickness = Self::thickness(ground, state.h);
+        let keep = self.friction.kept(forcing, &law, thickness, R::select(stops, zero, left), dt);
         per_axis!(k => R::select(stops, zero, slowed[k] * keep))
     }
 }

@@ -10,14 +10,14 @@ use super::variant::EnergyStable;
 use crate::real::{Real, per_axis};
 use crate::savage_hutter::Flow;
 use crate::savage_hutter::balanced::Order;
-use crate::savage_hutter::friction::{Friction, Resistance};
+use crate::savage_hutter::friction::{LocalFriction, Resistance};
 use crate::savage_hutter::ground::Bed;
 use crate::scheme::{Cell, Forecasts, Spacing, Stencil};
 
 /// What a cell that gives nothing offers.
 #[inline(always)]
-fn closed<const D: usize, R: Real, B: Bed<D, R>, T: EndsOf<D, R>>(
-    Cell { state, ground, .. }: &Cell<Flow<D, R>, B>,
+fn closed<const D: usize, R: Real, B: Bed<D, R>, P, T: EndsOf<D, R>>(
+    Cell { state, ground, .. }: &Cell<Flow<D, R>, B, P>,
     forecast: &Forecast<D, R, B::Surface>,
 ) -> FaceStatesOf<D, R, B, T> {
     let (zero, one) = (R::zero(), R::splat(1.0));
@@ -43,7 +43,7 @@ fn closed<const D: usize, R: Real, B: Bed<D, R>, T: EndsOf<D, R>>(
     }
 }
 
-impl<F: Friction, B: Copy, const ORDER: u8> EnergyStable<F, B, ORDER>
+impl<F: LocalFriction, B: Copy, const ORDER: u8> EnergyStable<F, B, ORDER>
 where
     Order<ORDER>: EndsStorage,
 {
@@ -60,7 +60,7 @@ where
     #[inline(always)]
     pub(super) fn offer<const D: usize, R: Real>(
         &self,
-        stencil: &impl Stencil<D, R, Flow<D, R>, B>,
+        stencil: &impl Stencil<D, R, Flow<D, R>, B, F::Parameters<R>>,
         forecasts: &Forecasts<D, Forecast<D, R, B::Surface>>,
         dt: R,
     ) -> FaceStatesOf<D, R, B, EndsIn<D, R, ORDER>>
@@ -75,14 +75,14 @@ where
             return offer;
         }
         let zero = R::zero();
-        let (bed, h, per) = (here.ground, here.state.h, near.spacing.inv);
+        let per = near.spacing.inv;
         let lambda: [R; D] = per_axis!(k => dt * per[k]);
-        let law = self.resistance(&bed, h, offer.u, per);
+        let law = self.resistance(&here, offer.u, per);
         let sides: [Sides<R>; D] = per_axis!(axis => Sides::of::<D, B>(axis, forecasts));
         let mut slopes = None;
         if self.is_second() {
             let there = per_axis!(k => [forecasts.lo[k].u, forecasts.hi[k].u]);
-            slopes = Some(Slopes::of::<B>(&near, &sides, (offer.u, there), lambda));
+            slopes = Some(Slopes::of::<B, _>(&near, &sides, (offer.u, there), lambda));
         }
         let w = self.accelerated(
             &here,
@@ -99,14 +99,14 @@ where
         let stops = is_zero(offer.w) & zero.lt(law.dry) & !shut;
         if let Some(slopes) = &slopes {
             offer.ends =
-                EndsOf::of(slopes.with::<B>(&near, &offer.plane, [offer.u, offer.w], stops | shut, dt));
+                EndsOf::of(slopes.with::<B, _>(&near, &offer.plane, [offer.u, offer.w], stops | shut, dt));
         }
         let code = offer.motion.code;
         let stopped = stops & !offer.motion.is_tower();
         offer.motion = Motion { code: R::select(stopped, R::splat(Motion::<R>::STOPS), code) };
         let gives = Gives { lambda, flows: !(stops | shut) };
         gives.offers::<B, _>(&sides, &mut offer);
-        gives.budget::<B, _>(&near, &sides, &mut offer);
+        gives.budget::<B, _, _>(&near, &sides, &mut offer);
         offer
     }
 
@@ -114,7 +114,7 @@ where
     #[inline(always)]
     fn accelerated<const D: usize, R: Real>(
         &self,
-        Cell { state, ground: bed, .. }: &Cell<Flow<D, R>, B>,
+        here: &Cell<Flow<D, R>, B, F::Parameters<R>>,
         (plane, u, motion): (&B::Plane, [R; D], Motion<R>),
         law: &Resistance<R>,
         (sides, slopes): ([Sides<R>; D], Option<&Slopes<D, R>>),
@@ -128,19 +128,18 @@ where
         let forces: [Downstream<R>; D] = per_axis!(k => sides[k].force(spacing.inv[k]));
         let (forces, unresolved) = centred(forces, law.dry);
         let pushed = pushed::<D, R, B>(plane, u, forces, dt);
-        let slow = bed.square(u).le(unresolved * R::splat(spacing.smallest));
+        let slow = here.ground.square(u).le(unresolved * R::splat(spacing.smallest));
         let idle = R::select(slow & !motion.is_tower(), unresolved * R::splat(UNRESOLVED), zero);
-        let mut dry = R::select(state.is_still(), law.holding, law.dry);
+        let mut dry = R::select(here.state.is_still(), law.holding, law.dry);
         let mut ahead = None;
         if let Some(slopes) = slopes
             && R::any(slopes.any)
         {
-            let at_mid_time =
-                self.resistance_at_mid_time(bed, state.h, [u, pushed], slopes, law, (spacing.inv, dt));
+            let at_mid_time = self.resistance_at_mid_time(here, [u, pushed], slopes, law, (spacing.inv, dt));
             dry = R::select(slopes.any, at_mid_time, dry);
             ahead = Some((slopes.any, per_axis!(k => u[k] + (slopes.advected[k] + slopes.advected[k]))));
         }
-        Self::slowed::<D, R>(plane, Resistance { dry, ..*law }, idle, pushed, ahead, dt)
+        self.slowed(here, plane, Resistance { dry, ..*law }, idle, pushed, ahead, dt)
     }
 
     /// The dry resistance at mid time: of the mean of the velocity before and after the push, moved on and shortened by what friction
@@ -148,8 +147,7 @@ where
     #[inline(always)]
     fn resistance_at_mid_time<const D: usize, R: Real>(
         &self,
-        bed: &B,
-        h: R,
+        here: &Cell<Flow<D, R>, B, F::Parameters<R>>,
         [u, pushed]: [[R; D]; 2],
         slopes: &Slopes<D, R>,
         law: &Resistance<R>,
@@ -160,10 +158,10 @@ where
     {
         let (one, half) = (R::splat(1.0), R::splat(0.5));
         let mean: [R; D] = per_axis!(k => half * (u[k] + pushed[k]) + slopes.advected[k]);
-        let speed = bed.square(mean).sqrt();
+        let speed = here.ground.square(mean).sqrt();
         let none = speed.le(R::zero());
         let keep = (one - half * dt * law.dry / R::select(none, one, speed)).positive_part();
-        self.resistance(bed, h, per_axis!(k => mean[k] * keep), per).dry
+        self.resistance(here, per_axis!(k => mean[k] * keep), per).dry
     }
 }
 

@@ -4,20 +4,20 @@ use super::force::{Downstream, UNRESOLVED, centred, continued, pushed};
 use super::variant::EnergyStable;
 use crate::real::{Real, for_axis, per_axis};
 use crate::savage_hutter::Flow;
-use crate::savage_hutter::friction::Friction;
+use crate::savage_hutter::friction::LocalFriction;
 use crate::savage_hutter::ground::Bed;
 use crate::scheme::{Cell, Neighbours, Stencil};
 
 /// A tower stands over a neighbour by this share of what friction holds: without it the last excess leaks in ever smaller parts.
 pub(super) const TOWER: f64 = 1.01;
 
-impl<F: Friction, B: Copy, const ORDER: u8> EnergyStable<F, B, ORDER> {
+impl<F: LocalFriction, B: Copy, const ORDER: u8> EnergyStable<F, B, ORDER> {
     /// Does a cell at rest hold itself, and if not, is it a tower: pulled no more than the static bound `holding`, yet above a
     /// neighbour by more, by its surface and by its thickness?
     #[inline(always)]
     pub(super) fn balance<const D: usize, R: Real>(
         &self,
-        near: &Neighbours<D, R, Flow<D, R>, B>,
+        near: &Neighbours<D, R, Flow<D, R>, B, F::Parameters<R>>,
         holding: R,
     ) -> (R::Mask, R::Mask)
     where
@@ -53,7 +53,12 @@ impl<F: Friction, B: Copy, const ORDER: u8> EnergyStable<F, B, ORDER> {
 
     /// The rise to a neighbour; to a bare bed above the surface at most as the surface goes on, `opposite` being the rise to the other.
     #[inline(always)]
-    fn counted<const D: usize, R: Real>(&self, there: &Cell<Flow<D, R>, B>, rise: R, opposite: R) -> R
+    fn counted<const D: usize, R: Real>(
+        &self,
+        there: &Cell<Flow<D, R>, B, F::Parameters<R>>,
+        rise: R,
+        opposite: R,
+    ) -> R
     where
         B: Bed<D, R>,
     {
@@ -64,7 +69,11 @@ impl<F: Friction, B: Copy, const ORDER: u8> EnergyStable<F, B, ORDER> {
     /// The rises of psi as a cell at rest counts them: a bare bed above the surface leans on nothing, and counts at most as the surface
     /// continued; outside the data the surface goes on as it comes.
     #[inline(always)]
-    fn leaning<const D: usize, R: Real>(&self, there: [&Cell<Flow<D, R>, B>; 2], [lo, hi]: [R; 2]) -> [R; 2]
+    fn leaning<const D: usize, R: Real>(
+        &self,
+        there: [&Cell<Flow<D, R>, B, F::Parameters<R>>; 2],
+        [lo, hi]: [R; 2],
+    ) -> [R; 2]
     where
         B: Bed<D, R>,
     {
@@ -78,15 +87,16 @@ impl<F: Friction, B: Copy, const ORDER: u8> EnergyStable<F, B, ORDER> {
     #[inline(always)]
     pub(super) fn pull_at_rest<const D: usize, R: Real>(
         &self,
-        stencil: &impl Stencil<D, R, Flow<D, R>, B>,
+        stencil: &impl Stencil<D, R, Flow<D, R>, B, F::Parameters<R>>,
     ) -> R
     where
         B: Bed<D, R>,
     {
         let (near, zero, one) = (stencil.star(), R::zero(), R::splat(1.0));
-        let bed = near.here.ground.exact();
+        let here = Cell { ground: near.here.ground.exact(), ..near.here };
+        let bed = here.ground;
         let (size, per) = (near.spacing.size, near.spacing.inv);
-        let law = self.resistance(&bed, near.here.state.h, [zero; D], per);
+        let law = self.resistance(&here, [zero; D], per);
         let surface = bed.surface(near.here.state.h, size);
         let forces: [[Downstream<R>; 2]; D] = per_axis!(axis => {
             let there = [&near.lo[axis], &near.hi[axis]];

@@ -8,7 +8,7 @@ use super::reconstruct::EndsIn;
 use super::variant::EnergyStable;
 use crate::real::{Real, largest, per_axis, total};
 use crate::savage_hutter::balanced::Order;
-use crate::savage_hutter::friction::Friction;
+use crate::savage_hutter::friction::LocalFriction;
 use crate::savage_hutter::ground::Bed;
 use crate::savage_hutter::{Flow, normal};
 use crate::scheme::{Cell, Diagnostics, Faces, Forecasts, Scheme, SchemeVisitor, Side, Spacing, Stencil};
@@ -17,14 +17,14 @@ use crate::time::{EULER, Stages};
 /// A cell keeps less than the books allow by this share, so that the energy falls in every step in which anything moves.
 const LOST: f64 = 1e-6;
 
-impl<F: Friction, const D: usize, R: Real, B: Bed<D, R>, const ORDER: u8> Scheme<D, R>
+impl<F: LocalFriction, const D: usize, R: Real, B: Bed<D, R>, const ORDER: u8> Scheme<D, R>
     for EnergyStable<F, B, ORDER>
 where
     Order<ORDER>: EndsStorage,
 {
     type State = Flow<D, R>;
     type Ground = B;
-    type Forcing = ();
+    type Forcing = F::Parameters<R>;
     type Primitives = ();
     type Forecast = Forecast<D, R, B::Surface>;
     type FaceStates = FaceStatesOf<D, R, B, EndsIn<D, R, ORDER>>;
@@ -33,6 +33,9 @@ where
 
     const REFUSES_LONG_STEPS: bool = true;
 
+    fn usual_forcing(&self) -> F::Parameters<R> {
+        self.friction.parameters()
+    }
     fn stages(&self) -> Stages {
         EULER
     }
@@ -54,15 +57,19 @@ where
     }
 
     #[inline(always)]
-    fn primitives(&self, _here: &Cell<Flow<D, R>, B>) {}
+    fn primitives(&self, _here: &Cell<Flow<D, R>, B, F::Parameters<R>>) {}
     #[inline(always)]
-    fn forecast(&self, stencil: &impl Stencil<D, R, Flow<D, R>, B>, dt: R) -> Self::Forecast {
+    fn forecast(
+        &self,
+        stencil: &impl Stencil<D, R, Flow<D, R>, B, F::Parameters<R>>,
+        dt: R,
+    ) -> Self::Forecast {
         self.foresee(stencil, dt)
     }
     #[inline(always)]
     fn reconstruct(
         &self,
-        stencil: &impl Stencil<D, R, Flow<D, R>, B>,
+        stencil: &impl Stencil<D, R, Flow<D, R>, B, F::Parameters<R>>,
         _: &(),
         forecasts: &Forecasts<D, Self::Forecast>,
         dt: R,
@@ -79,7 +86,7 @@ where
     #[inline(always)]
     fn update(
         &self,
-        stencil: &impl Stencil<D, R, Flow<D, R>, B>,
+        stencil: &impl Stencil<D, R, Flow<D, R>, B, F::Parameters<R>>,
         face_states: &Self::FaceStates,
         faces: &[Faces<Flux<D, R>>; D],
         _corners: &[[(); 2]; 2],
@@ -124,14 +131,14 @@ where
     /// sum over axes of (|u| + sqrt(2 beta h))/dx, and at least sqrt(5 g/dx): no fall from rest takes a tenth of a cell in a step. A
     /// film never sets the step.
     #[inline(always)]
-    fn rate(&self, here: &Cell<Flow<D, R>, B>, spacing: &Spacing<D, R>) -> R {
+    fn rate(&self, here: &Cell<Flow<D, R>, B, F::Parameters<R>>, spacing: &Spacing<D, R>) -> R {
         let fall = (R::splat(5.0) * here.ground.gravity() * largest(spacing.inv)).sqrt();
         let rate = here.state.rate(&here.ground, spacing.inv).max(fall);
         R::select(here.state.h.lt(R::splat(self.film)), R::zero(), rate)
     }
     /// q = 0: a cell that a step leaves at rest and unchanged, every later step leaves so.
     #[inline(always)]
-    fn is_static(&self, here: &Cell<Flow<D, R>, B>) -> R::Mask {
+    fn is_static(&self, here: &Cell<Flow<D, R>, B, F::Parameters<R>>) -> R::Mask {
         here.state.is_still() | self.is_dry(here)
     }
     #[inline(always)]
@@ -142,11 +149,11 @@ where
     fn outflow(&self, flux: &Flux<D, R>, _side: Side, _lambda: R) -> R {
         flux.mass
     }
-    fn yield_ratio(&self, stencil: &impl Stencil<D, R, Flow<D, R>, B>) -> R {
+    fn yield_ratio(&self, stencil: &impl Stencil<D, R, Flow<D, R>, B, F::Parameters<R>>) -> R {
         self.pull_at_rest(stencil)
     }
     #[inline(always)]
-    fn diagnostics(&self, here: &Cell<Flow<D, R>, B>) -> Diagnostics<R> {
+    fn diagnostics(&self, here: &Cell<Flow<D, R>, B, F::Parameters<R>>) -> Diagnostics<R> {
         here.state.diagnostics(&here.ground, R::splat(self.film))
     }
 }

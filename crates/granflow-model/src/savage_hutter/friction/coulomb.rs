@@ -2,6 +2,7 @@
 
 use super::{Friction, Resistance};
 use crate::real::Real;
+use crate::scheme::components;
 
 /// mu N+ (Coulomb 1776; report eq. 1, R = cos zeta tan delta).
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -9,6 +10,8 @@ pub struct Coulomb {
     /// mu = tan(delta).
     pub mu: f64,
 }
+
+components!(Coulomb { mu: f64 });
 
 impl Friction for Coulomb {
     #[inline(always)]
@@ -26,6 +29,8 @@ pub struct Cohesion {
     /// Cohesion over density, tau0/rho \[m^2/s^2\].
     pub bond: f64,
 }
+
+components!(Cohesion { mu: f64, bond: f64 });
 
 impl Friction for Cohesion {
     #[inline(always)]

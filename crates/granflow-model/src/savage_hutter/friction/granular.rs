@@ -1,7 +1,8 @@
 //! Laws of dense granular flow, in which friction grows with the speed and falls with the thickness.
 
-use super::{Friction, Resistance};
-use crate::real::{Real, power};
+use super::Resistance;
+use crate::real::power;
+use crate::scheme::components;
 
 /// Pouliquen and Forterre's law with a start and a stop (J. Fluid Mech. 453, 2002, eqs. 3.1-3.6), Fr = |V|/sqrt(N+ h):
 ///
@@ -22,32 +23,33 @@ pub struct PouliquenForterre {
     pub gamma: f64,
 }
 
-impl Friction for PouliquenForterre {
-    #[inline(always)]
-    fn resistance<R: Real>(&self, thickness: R, speed_squared: R, load: R, weight: R) -> Resistance<R> {
+components!(PouliquenForterre { mu: [f64; 3], length: f64, beta: f64, gamma: f64 });
+
+impl PouliquenForterre {
+    /// [`Friction::resistance`](super::Friction::resistance), of one cell.
+    pub(super) fn resistance(
+        &self,
+        thickness: f64,
+        speed_squared: f64,
+        load: f64,
+        weight: f64,
+    ) -> Resistance<f64> {
         let [mu1, mu2, mu3] = self.mu;
-        let (zero, one, length) = (R::zero(), R::splat(1.0), R::splat(self.length));
-        let rise = R::splat(mu2 - mu1);
-        let by_thickness = rise * (length / (length + thickness));
-        let (stop, start) = (R::splat(mu1) + by_thickness, R::splat(mu3) + by_thickness);
+        let rise = mu2 - mu1;
+        let by_thickness = rise * (self.length / (self.length + thickness));
+        let (stop, start) = (mu1 + by_thickness, mu3 + by_thickness);
         let speed = speed_squared.sqrt();
         // beta sqrt(N h): the speed at Fr = beta.
-        let least = R::splat(self.beta) * (load * thickness).sqrt();
-        let fast = least.le(speed) & zero.lt(speed);
-        let path = length * speed + thickness * least;
-        let per = one / R::select(fast, path, one);
-        // (mu - mu1) N/|V|: what grows with the speed, to be solved for implicitly.
-        let viscous = R::select(fast, rise * length * load * per, zero);
-        let still = least.le(zero);
-        let share = (speed / R::select(still, one, least)).min(one);
-        let [share] = R::each([share], |[share]| [power(share, self.gamma)]);
-        let slow = start + share * (stop - start);
-        Resistance {
-            dry: R::select(fast, R::splat(mu1), slow) * load,
-            viscous,
-            drag: zero,
-            holding: start * weight,
+        let least = self.beta * (load * thickness).sqrt();
+        let holding = start * weight;
+        if least <= speed && speed > 0.0 {
+            // (mu - mu1) N/|V|: what grows with the speed, to be solved for implicitly.
+            let viscous = rise * self.length * load / (self.length * speed + thickness * least);
+            return Resistance { dry: mu1 * load, viscous, drag: 0.0, holding };
         }
+        let share = if least <= 0.0 { 1.0 } else { (speed / least).min(1.0) };
+        let mu = start + power(share, self.gamma) * (stop - start);
+        Resistance { dry: mu * load, viscous: 0.0, drag: 0.0, holding }
     }
 }
 
@@ -67,16 +69,22 @@ pub struct MuI {
     pub phi: f64,
 }
 
-impl Friction for MuI {
-    #[inline(always)]
-    fn resistance<R: Real>(&self, thickness: R, speed_squared: R, load: R, weight: R) -> Resistance<R> {
-        let (zero, one, mu1) = (R::zero(), R::splat(1.0), R::splat(self.mu1));
-        let per_speed = R::splat(2.5 * self.grain);
-        let slow = R::splat(self.i0) * thickness * (R::splat(self.phi) * load * thickness).sqrt();
+components!(MuI { mu1: f64, mu2: f64, i0: f64, grain: f64, phi: f64 });
+
+impl MuI {
+    /// [`Friction::resistance`](super::Friction::resistance), of one cell.
+    pub(super) fn resistance(
+        &self,
+        thickness: f64,
+        speed_squared: f64,
+        load: f64,
+        weight: f64,
+    ) -> Resistance<f64> {
+        let per_speed = 2.5 * self.grain;
+        let slow = self.i0 * thickness * (self.phi * load * thickness).sqrt();
         let sum = per_speed * speed_squared.sqrt() + slow;
-        let none = sum.le(zero);
-        let rise = R::splat(self.mu2 - self.mu1) * per_speed * load;
-        let viscous = R::select(none, zero, rise / R::select(none, one, sum));
-        Resistance { dry: mu1 * load, viscous, drag: zero, holding: mu1 * weight }
+        let rise = (self.mu2 - self.mu1) * per_speed * load;
+        let viscous = if sum <= 0.0 { 0.0 } else { rise / sum };
+        Resistance { dry: self.mu1 * load, viscous, drag: 0.0, holding: self.mu1 * weight }
     }
 }

@@ -2,6 +2,7 @@
 
 use super::{Friction, Resistance};
 use crate::real::Real;
+use crate::scheme::components;
 
 /// samosAT, the default law of AvaFrame's com1DFA (Sampl & Granig 2009; AvaFrame documentation).
 ///
@@ -22,6 +23,8 @@ pub struct SamosAt {
     /// B.
     pub b: f64,
 }
+
+components!(SamosAt { mu: f64, bond: f64, rs0: f64, kappa: f64, r: f64, b: f64 });
 
 impl Friction for SamosAt {
     #[inline(always)]

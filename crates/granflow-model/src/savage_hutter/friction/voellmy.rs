@@ -2,6 +2,7 @@
 
 use super::{Coulomb, Friction, Resistance};
 use crate::real::Real;
+use crate::scheme::components;
 
 /// mu N+ + g |V|^2/(xi h) (Voellmy, Schweiz. Bauzeitung 73, 1955).
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -13,6 +14,8 @@ pub struct Voellmy {
     /// Gravity g \[m/s^2\].
     pub gravity: f64,
 }
+
+components!(Voellmy { mu: f64, xi: f64, gravity: f64 });
 
 impl Friction for Voellmy {
     #[inline(always)]

@@ -4,6 +4,8 @@ pub mod avalanche;
 pub(crate) mod chute;
 pub(crate) mod describe;
 pub mod flowing;
+#[cfg(feature = "geo")]
+mod parameters;
 #[cfg(all(feature = "geo", feature = "threads"))]
 pub(crate) mod speed;
 #[cfg(feature = "geo")]

@@ -13,7 +13,7 @@ use granflow_engine::kernels::Kernel;
 use granflow_engine::simulation::{BuildError, Simulation, StepSize};
 use granflow_model::savage_hutter::Flow;
 use granflow_model::savage_hutter::energy_stable::EnergyStable;
-use granflow_model::savage_hutter::friction::{Coulomb, Friction, Law, Resistance};
+use granflow_model::savage_hutter::friction::{AnyLaw, Coulomb, Law, LocalFriction, Resistance};
 use granflow_model::savage_hutter::ground::{Bed, Chute};
 use std::sync::Arc;
 
@@ -23,7 +23,7 @@ type Field<'a, const D: usize, T> = Box<dyn Fn([f64; D]) -> T + Sync + 'a>;
 pub struct Avalanche<'a, const D: usize, B> {
     grid: Grid<D>,
     bed: B,
-    law: Law,
+    law: AnyLaw,
     second_order: bool,
     film: f64,
     threshold: f64,
@@ -44,7 +44,7 @@ impl<'a, const D: usize, B> Avalanche<'a, D, B> {
         Avalanche {
             grid,
             bed,
-            law: Law::Coulomb(Coulomb { mu: 0.4 }),
+            law: AnyLaw::Coulomb(Coulomb { mu: 0.4 }),
             second_order,
             film,
             threshold,
@@ -68,12 +68,12 @@ impl<'a, const D: usize, B> Avalanche<'a, D, B> {
     /// Coulomb friction with mu = tan(delta).
     #[must_use]
     pub fn mu(self, mu: f64) -> Self {
-        self.friction(Law::Coulomb(Coulomb { mu }))
+        self.friction(AnyLaw::Coulomb(Coulomb { mu }))
     }
     /// The friction law.
     #[must_use]
-    pub fn friction(self, law: Law) -> Self {
-        Avalanche { law, ..self }
+    pub fn friction(self, law: impl Into<AnyLaw>) -> Self {
+        Avalanche { law: law.into(), ..self }
     }
     /// First order: the scheme `energy_stable`, the default on a plane.
     #[must_use]
@@ -112,18 +112,14 @@ impl<'a, const D: usize, B> Avalanche<'a, D, B> {
     where
         G: Bed<D, f64> + 'static,
         EnergyStable<Law, G>: Kernel<D, State = Flow<D, f64>, Ground = G>,
+        EnergyStable<AnyLaw, G>: Kernel<D, State = Flow<D, f64>, Ground = G>,
     {
         let (law, film) = (self.law, self.film);
-        if self.second_order {
-            self.run_by(
-                "energy_stable_2",
-                EnergyStable::<Law, G>::second(law, film),
-                domain,
-                on_terrain,
-                ground,
-            )
-        } else {
-            self.run_by("energy_stable", EnergyStable::<Law, G>::first(law, film), domain, on_terrain, ground)
+        let second = self.second_order;
+        let name = if second { "energy_stable_2" } else { "energy_stable" };
+        match law.in_loops() {
+            Some(law) => self.run_by(name, of_order::<Law, G>(second, law, film), domain, on_terrain, ground),
+            None => self.run_by(name, of_order::<AnyLaw, G>(second, law, film), domain, on_terrain, ground),
         }
     }
 
@@ -163,10 +159,17 @@ impl<'a, const D: usize, B> Avalanche<'a, D, B> {
     }
 }
 
+/// The scheme of an order.
+fn of_order<F, G>(second: bool, law: F, film: f64) -> EnergyStable<F, G> {
+    if second { EnergyStable::second(law, film) } else { EnergyStable::first(law, film) }
+}
+
 /// Friction is a finite resistance, never a push.
-fn check_law(law: Law) -> Result<(), BuildError> {
-    let Resistance { dry, viscous, drag, holding } = law.resistance(1.0, 1.0, 1.0, 1.0);
-    [dry, viscous, drag, holding].into_iter().try_for_each(|part| {
+fn check_law(law: AnyLaw) -> Result<(), BuildError> {
+    let own = law.parameters();
+    let Resistance { dry, viscous, drag, holding } = law.resistance_with(&own, 1.0, 1.0, 1.0, 1.0);
+    let kept = law.kept(&own, &law.resistance_with(&own, 1.0, 1.0, 1.0, 1.0), 1.0, 1.0, 1.0);
+    [dry, viscous, drag, holding, kept].into_iter().try_for_each(|part| {
         check_value("friction of the law", part, "parameters that give a finite number >= 0", |part| {
             part >= 0.0
         })

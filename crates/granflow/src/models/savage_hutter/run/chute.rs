@@ -30,8 +30,14 @@ pub(crate) fn start(run: &RunPlan, plan: Plan) -> Result<Box<dyn Run>, StartErro
 }
 
 fn on<const D: usize>(run: &RunPlan, plan: Plan) -> Result<Box<dyn Run>, StartError> {
-    let (law, mu) = (plan.material.law, plan.material.mu);
+    let mu = plan.material.mu;
     let Method { name, film } = plan.scheme;
+    let Some(law) = plan.material.law_in_loops() else {
+        let law = plan.material.law;
+        let second = name == SchemeName::EnergyStable2;
+        let scheme = if second { EnergyStable::second(law, film) } else { EnergyStable::first(law, film) };
+        return simulate::<D, _>(run, plan, scheme);
+    };
     let published = |variant: Variant| variant.with(Coulomb { mu });
     match name {
         SchemeName::Balanced => simulate::<D, _>(run, plan, Balanced::first(law, film)),

@@ -2,6 +2,7 @@
 
 use super::super::TerrainDomain;
 use super::flowing::Flowing;
+use super::parameters::InCells;
 use crate::StartError;
 use crate::memory::fits;
 use crate::model::Plane;
@@ -39,6 +40,8 @@ pub(super) struct Loaded {
     /// What was decided while reading, and what looks wrong.
     pub remarks: Vec<Remark>,
     pub survey: Survey,
+    /// What of the friction differs from cell to cell.
+    pub parameters: InCells,
 }
 
 /// The run on a mountain that was read. The derivatives of the bed are fitted cell by cell as the simulation asks for its
@@ -46,7 +49,7 @@ pub(super) struct Loaded {
 pub(super) fn simulate(
     run: &RunPlan,
     plan: &Plan,
-    Loaded { terrain, release, remarks, .. }: Loaded,
+    Loaded { terrain, release, remarks, parameters, .. }: Loaded,
 ) -> Result<Box<dyn Run>, StartError> {
     let (bed, gravity) = (&terrain.bed, plan.material.gravity);
     let columns = bed.columns;
@@ -66,42 +69,62 @@ pub(super) fn simulate(
         remarks,
     };
     let plane = Plane::of(&grid, Arc::new(domain));
-    let (law, film) = (plan.material.law, plan.scheme.film);
+    let film = plan.scheme.film;
     let ceiling = gravity * ceiling(&terrain, &release);
     let ground = move |cell| ground_at(&terrain, gravity, cell);
     let state = move |[i, j]: [usize; 2]| Flow::still(release.get(j * columns + i));
+    let begin = Begin { run, film, grid, plane };
+    let Some(law) = plan.material.law_in_loops() else {
+        let law = plan.material.law;
+        let scheme = match plan.scheme.name {
+            TerrainScheme::EnergyStable2 => EnergyStable::second(law, film),
+            TerrainScheme::EnergyStable => EnergyStable::first(law, film),
+            TerrainScheme::Balanced | TerrainScheme::Balanced2 => {
+                unreachable!("a case with these schemes has a law of the loops")
+            }
+        };
+        let of_cell = move |[i, j]: [usize; 2], _| parameters.at(j * columns + i);
+        return begin.with(scheme.below(ceiling), ground, state, of_cell);
+    };
     match plan.scheme.name {
-        TerrainScheme::Balanced => begin(run, film, Balanced::first(law, film), (grid, plane), ground, state),
-        TerrainScheme::Balanced2 => {
-            begin(run, film, Balanced::second(law, film), (grid, plane), ground, state)
-        }
+        TerrainScheme::Balanced => begin.with(Balanced::first(law, film), ground, state, |_, ()| ()),
+        TerrainScheme::Balanced2 => begin.with(Balanced::second(law, film), ground, state, |_, ()| ()),
         TerrainScheme::EnergyStable => {
-            let scheme = EnergyStable::first(law, film).below(ceiling);
-            begin(run, film, scheme, (grid, plane), ground, state)
+            begin.with(EnergyStable::first(law, film).below(ceiling), ground, state, |_, ()| ())
         }
         TerrainScheme::EnergyStable2 => {
-            let scheme = EnergyStable::second(law, film).below(ceiling);
-            begin(run, film, scheme, (grid, plane), ground, state)
+            begin.with(EnergyStable::second(law, film).below(ceiling), ground, state, |_, ()| ())
         }
     }
 }
 
-/// A run with a scheme.
-fn begin<S>(
-    run: &RunPlan,
+/// A run that is to begin.
+struct Begin<'a> {
+    run: &'a RunPlan,
     film: f64,
-    scheme: S,
-    (grid, plane): (Grid<2>, Plane),
-    ground: impl Fn([usize; 2]) -> ground::Terrain<2, f64> + Sync,
-    state: impl Fn([usize; 2]) -> Flow<2, f64> + Sync,
-) -> Result<Box<dyn Run>, StartError>
-where
-    S: Kernel<2, State = Flow<2, f64>, Ground = ground::Terrain<2, f64>, Forcing = ()> + 'static,
-{
-    fits(grid.cells.iter().product(), Simulation::<2, S>::bytes_per_cell(false))?;
-    let simulation = Simulation::new(scheme, grid, step_size(run), ground, state)?;
-    let physics = Flowing::new(run.scheme, film, true).with_threshold(run.output.threshold);
-    Ok(Box::new(Simulated::new(simulation, physics, plane)))
+    grid: Grid<2>,
+    plane: Plane,
+}
+
+impl Begin<'_> {
+    /// With a scheme, and what acts on each cell.
+    fn with<S>(
+        self,
+        scheme: S,
+        ground: impl Fn([usize; 2]) -> ground::Terrain<2, f64> + Sync,
+        state: impl Fn([usize; 2]) -> Flow<2, f64> + Sync,
+        forcing: impl Fn([usize; 2], S::Forcing) -> S::Forcing + Sync,
+    ) -> Result<Box<dyn Run>, StartError>
+    where
+        S: Kernel<2, State = Flow<2, f64>, Ground = ground::Terrain<2, f64>> + 'static,
+    {
+        let Begin { run, film, grid, plane } = self;
+        fits(grid.cells.iter().product(), Simulation::<2, S>::bytes_per_cell(false))?;
+        let mut simulation = Simulation::new(scheme, grid, step_size(run), ground, state)?;
+        simulation.apply(forcing);
+        let physics = Flowing::new(run.scheme, film, true).with_threshold(run.output.threshold);
+        Ok(Box::new(Simulated::new(simulation, physics, plane)))
+    }
 }
 
 /// The highest total head \[m\] that a mass released at rest can have: its highest surface and its greatest height c^2 H over
@@ -138,8 +161,10 @@ pub(super) fn load(run: &RunPlan, plan: &Plan) -> Result<Loaded, StartError> {
     let (bed, crs) = bed(run, plan, &mut remarks)?;
     let survey = Survey::of(&bed);
     remarks.extend(survey.warnings(&plan.dem.display().to_string()));
+    let parameters = InCells::read(run, &plan.material, (&bed, crs.as_ref()), &mut remarks)?;
     let terrain = curved(run, plan, bed)?;
-    let mut loaded = Loaded { terrain, release: Sparse::default(), parts: Vec::new(), remarks, survey };
+    let mut loaded =
+        Loaded { terrain, release: Sparse::default(), parts: Vec::new(), remarks, survey, parameters };
     for one in &plan.releases {
         add(&mut loaded, one, crs.as_ref())?;
     }

@@ -1,0 +1,112 @@
+//! Parameters of friction that differ from place to place, read for the cells of a mountain.
+
+use crate::StartError;
+use granflow_case::RunPlan;
+use granflow_case::avalanche::{InSpace, Material, Place};
+use granflow_geo::Remark;
+use granflow_geo::raster::{Crs, Raster, Reading};
+use granflow_geo::release::Layer;
+use granflow_model::savage_hutter::friction::Parameters;
+
+/// The numbers of the law in the cells of a mountain.
+pub(crate) struct InCells {
+    /// Where they are the same everywhere.
+    usual: Parameters<f64>,
+    /// Those that differ: which number it is, and its value in each cell; not a number outside the data.
+    fields: Vec<(usize, Vec<f64>)>,
+    /// Each parameter with its least and its largest value, as a case writes it.
+    pub ranges: Vec<(String, [f64; 2])>,
+}
+
+impl InCells {
+    /// Reads what differs from place to place, on the cells of `bed`; each value must be one that the law takes.
+    pub fn read(
+        run: &RunPlan,
+        material: &Material,
+        (bed, crs): (&Raster, Option<&Crs>),
+        remarks: &mut Vec<Remark>,
+    ) -> Result<InCells, StartError> {
+        let usual = Parameters::of(&material.law);
+        let mut cells = InCells { usual, fields: Vec::new(), ranges: Vec::new() };
+        for parameter in &material.in_space {
+            let mut values = values(&parameter.place, (bed, crs), remarks)?;
+            let (mut least, mut largest) = (f64::INFINITY, f64::NEG_INFINITY);
+            for (cell, (value, level)) in values.iter_mut().zip(&bed.values).enumerate() {
+                if level.is_nan() {
+                    *value = f64::NAN;
+                    continue;
+                }
+                let first = cells.number(0, cell);
+                if !parameter.range.fits(*value, first) {
+                    return Err(fault(run, parameter, bed, cell, *value));
+                }
+                (least, largest) = (least.min(*value), largest.max(*value));
+                *value /= parameter.per;
+            }
+            cells.ranges.push((parameter.key.clone(), [least, largest]));
+            cells.fields.push((parameter.index, values));
+        }
+        Ok(cells)
+    }
+
+    /// Number `k` of the law in a cell.
+    fn number(&self, k: usize, cell: usize) -> f64 {
+        self.fields
+            .iter()
+            .find(|(index, _)| *index == k)
+            .map_or(self.usual.get(k), |(_, values)| values[cell])
+    }
+
+    /// The parameters of a cell.
+    pub fn at(&self, cell: usize) -> Parameters<f64> {
+        let here = self.fields.iter().filter(|(_, values)| !values[cell].is_nan());
+        here.fold(self.usual, |all, (index, values)| all.with(*index, values[cell]))
+    }
+}
+
+/// The values of a parameter on the cells of a bed.
+fn values(
+    place: &Place,
+    (bed, crs): (&Raster, Option<&Crs>),
+    remarks: &mut Vec<Remark>,
+) -> Result<Vec<f64>, StartError> {
+    let (mut values, elsewhere) = match place {
+        Place::Raster(path, elsewhere) => {
+            let Reading { raster, notes } = Reading::of_numbers(path, bed.crs.as_ref().or(crs))?;
+            remarks.extend(notes);
+            raster.same_system(path, bed)?;
+            let at = |k: usize| raster.holding([bed.x(k % bed.columns), bed.y(k / bed.columns)]);
+            ((0..bed.values.len()).map(at).collect(), *elsewhere)
+        }
+        Place::Polygons(path, attribute, elsewhere) => {
+            let layer = Layer::read(path)?;
+            remarks.extend(layer.notes(bed));
+            (layer.zones(attribute, bed)?, *elsewhere)
+        }
+        Place::ByElevation(classes) => {
+            return Ok(bed.values.iter().map(|level| classes.at(*level)).collect());
+        }
+    };
+    if let Some(elsewhere) = elsewhere {
+        values.iter_mut().filter(|value| value.is_nan()).for_each(|value| *value = elsewhere);
+    }
+    Ok(values)
+}
+
+/// A value that the law does not take, or none.
+fn fault(run: &RunPlan, parameter: &InSpace, bed: &Raster, cell: usize, value: f64) -> StartError {
+    let InSpace { key, place, range, .. } = parameter;
+    let file = match place {
+        Place::Raster(path, _) | Place::Polygons(path, _, _) => format!("{}: ", path.display()),
+        Place::ByElevation(_) => String::new(),
+    };
+    let [column, row] = bed.place(cell);
+    let at = format!("at ({}, {})", bed.x(column), bed.y(row));
+    let allowed = range.allowed();
+    if value.is_nan() {
+        let message = format!("{file}no value {at}, where the terrain has one");
+        let cure = format!("say what holds there, for instance elsewhere = 0.4 beside it ({allowed})");
+        return run.fault(key, message, &cure).into();
+    }
+    run.fault(key, format!("{file}found {value} {at}, expected {allowed}"), "mend the file").into()
+}
