@@ -67,14 +67,14 @@ const LAWS: [Law; 9] = [
         thickness: 1.0,
     },
     Law {
-        case: "pouliquen_forterre = { mu1 = 0.384, mu2 = 0.594, mu3 = 0.408, length = 6.5e-4 }",
+        case: "pouliquen = { mu1 = 0.384, mu2 = 0.594, mu3 = 0.408, length = 6.5e-4 }",
         braking: pouliquen_forterre,
         holding: |h, n| (0.408 + 0.21 / (1.0 + h / 6.5e-4)) * n,
         slope: 0.45,
         thickness: 0.006,
     },
     Law {
-        case: "mu_i = { mu1 = 0.38, mu2 = 0.64, i0 = 0.28, grain = 5e-4 }",
+        case: "mu_i = { mu_s = 0.38, mu_2 = 0.64, i0 = 0.28, grain = 5e-4 }",
         braking: |h, v, n| {
             let i = 2.5 * v * 5e-4 / (h * (0.6 * n * h).sqrt());
             (0.38 + 0.26 / (1.0 + 0.28 / i)) * n
@@ -84,28 +84,28 @@ const LAWS: [Law; 9] = [
         thickness: 0.01,
     },
     Law {
-        case: "bingham = { tau0 = 500.0, eta = 80.0 }",
+        case: "bingham = { yield = 500.0, viscosity = 80.0 }",
         braking: |h, v, _| yielding(500.0, 80.0, 1.0, v / h) / h,
         holding: |h, _| 500.0 / (DENSITY * h),
         slope: 0.15,
         thickness: 0.5,
     },
     Law {
-        case: "bingham = { tau0 = 0.0, eta = 80.0 }",
+        case: "bingham = { yield = 0.0, viscosity = 80.0 }",
         braking: |h, v, _| 3.0 * 80.0 / DENSITY * v / (h * h),
         holding: |_, _| 0.0,
         slope: 0.15,
         thickness: 0.5,
     },
     Law {
-        case: "herschel_bulkley = { tau0 = 200.0, k = 120.0, n = 0.4 }",
+        case: "herschel_bulkley = { yield = 200.0, consistency = 120.0, exponent = 0.4 }",
         braking: |h, v, _| yielding(200.0, 120.0, 0.4, v / h) / h,
         holding: |h, _| 200.0 / (DENSITY * h),
         slope: 0.06,
         thickness: 0.5,
     },
     Law {
-        case: "herschel_bulkley = { tau0 = 200.0, k = 20.0, n = 1.5 }",
+        case: "herschel_bulkley = { yield = 200.0, consistency = 20.0, exponent = 1.5 }",
         braking: |h, v, _| yielding(200.0, 20.0, 1.5, v / h) / h,
         holding: |h, _| 200.0 / (DENSITY * h),
         slope: 0.15,
@@ -305,9 +305,9 @@ fn a_draining_layer_without_films_stays_a_number() {
     let laws = [
         "quadratic = { tau0 = 0.0, eta = 0.0 }",
         "quadratic = { tau0 = 0.0, eta = 0.0, manning = 0.05 }",
-        "bingham = { tau0 = 0.0, eta = 1.0 }",
-        "mu_i = { mu1 = 0.1, mu2 = 0.6, i0 = 0.3, grain = 1e-3 }",
-        "pouliquen_forterre = { mu1 = 0.1, mu2 = 0.3, mu3 = 0.12, length = 1e-3 }",
+        "bingham = { yield = 0.0, viscosity = 1.0 }",
+        "mu_i = { mu_s = 0.1, mu_2 = 0.6, i0 = 0.3, grain = 1e-3 }",
+        "pouliquen = { mu1 = 0.1, mu2 = 0.3, mu3 = 0.12, length = 1e-3 }",
     ];
     for law in laws {
         for scheme in SCHEMES {

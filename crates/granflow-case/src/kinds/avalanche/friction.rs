@@ -51,6 +51,7 @@ pub(crate) enum Friction {
     /// samosAT, the default law of AvaFrame: [tau0 + mu sigma (1 + rs0/(rs0 + Rs)) + rho |V|^2/(ln(h/r)/kappa + b)^2]/(rho h).
     Samosat(Samosat),
     /// Pouliquen & Forterre (2002): starts above one thickness, stops below a smaller one.
+    #[serde(rename = "pouliquen", alias = "pouliquen_forterre")]
     PouliquenForterre(PouliquenForterre),
     /// mu(I), averaged over the depth (Gray & Edwards 2014).
     MuI(MuI),
@@ -95,9 +96,11 @@ fn gamma() -> f64 {
 #[serde(deny_unknown_fields)]
 pub(crate) struct MuI {
     /// mu of slow flow.
-    pub mu1: f64,
+    #[serde(alias = "mu1")]
+    pub mu_s: f64,
     /// mu of fast flow.
-    pub mu2: f64,
+    #[serde(alias = "mu2")]
+    pub mu_2: f64,
     /// Inertial number half way between them.
     pub i0: f64,
     /// Diameter of the grains in m.
@@ -115,22 +118,27 @@ fn phi() -> f64 {
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct Bingham {
-    /// Yield stress tau0 in Pa.
-    pub tau0: f64,
-    /// Viscosity eta in Pa s.
-    pub eta: f64,
+    /// Yield stress in Pa.
+    #[serde(rename = "yield", alias = "tau0")]
+    pub yield_stress: f64,
+    /// Viscosity in Pa s.
+    #[serde(alias = "eta")]
+    pub viscosity: f64,
 }
 
 /// Herschel and Bulkley's law.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct HerschelBulkley {
-    /// Yield stress tau0 in Pa.
-    pub tau0: f64,
+    /// Yield stress in Pa.
+    #[serde(rename = "yield", alias = "tau0")]
+    pub yield_stress: f64,
     /// Consistency k in Pa s^n.
-    pub k: f64,
+    #[serde(alias = "k")]
+    pub consistency: f64,
     /// Exponent n, from 0.3 to 1.5.
-    pub n: f64,
+    #[serde(alias = "n")]
+    pub exponent: f64,
 }
 
 /// The quadratic law of mud and debris.
@@ -235,11 +243,21 @@ impl Friction {
             Self::Voellmy(_) => "voellmy",
             Self::Cohesion(_) => "cohesion",
             Self::Samosat(_) => "samosat",
-            Self::PouliquenForterre(_) => "pouliquen_forterre",
+            Self::PouliquenForterre(_) => "pouliquen",
             Self::MuI(_) => "mu_i",
             Self::Bingham(_) => "bingham",
             Self::HerschelBulkley(_) => "herschel_bulkley",
             Self::Quadratic(_) => "quadratic",
+        }
+    }
+
+    /// mu of a law that holds no layer, however thin, on a bed steeper than mu; of a law without such a bound none.
+    pub fn slipping(&self) -> Option<f64> {
+        match self {
+            Self::Coulomb(Coulomb { angle, mu }) | Self::Voellmy(Voellmy { angle, mu, .. }) => {
+                angle.map(|angle| angle.radians().tan()).or(*mu)
+            }
+            _ => None,
         }
     }
 
@@ -265,19 +283,18 @@ impl Friction {
                 let law = law::PouliquenForterre { mu, length: *length, beta: *beta, gamma: *gamma };
                 law::CellByCell::PouliquenForterre(law).into()
             }
-            Self::MuI(MuI { mu1, mu2, i0, grain, phi }) => {
-                law::CellByCell::MuI(law::MuI { mu1: *mu1, mu2: *mu2, i0: *i0, grain: *grain, phi: *phi })
+            Self::MuI(MuI { mu_s, mu_2, i0, grain, phi }) => {
+                law::CellByCell::MuI(law::MuI { mu1: *mu_s, mu2: *mu_2, i0: *i0, grain: *grain, phi: *phi })
                     .into()
             }
-            Self::Bingham(Bingham { tau0, eta }) => law::CellByCell::HerschelBulkley(law::HerschelBulkley {
-                bond: tau0 / density,
-                consistency: eta / density,
-                n: 1.0,
-            })
-            .into(),
-            Self::HerschelBulkley(HerschelBulkley { tau0, k, n }) => {
-                let (bond, consistency) = (tau0 / density, k / density);
-                law::CellByCell::HerschelBulkley(law::HerschelBulkley { bond, consistency, n: *n }).into()
+            Self::Bingham(Bingham { yield_stress, viscosity }) => {
+                let (bond, consistency) = (yield_stress / density, viscosity / density);
+                law::CellByCell::HerschelBulkley(law::HerschelBulkley { bond, consistency, n: 1.0 }).into()
+            }
+            Self::HerschelBulkley(HerschelBulkley { yield_stress, consistency, exponent }) => {
+                let (bond, consistency) = (yield_stress / density, consistency / density);
+                law::CellByCell::HerschelBulkley(law::HerschelBulkley { bond, consistency, n: *exponent })
+                    .into()
             }
             Self::Quadratic(Quadratic { tau0, eta, k, manning }) => {
                 law::CellByCell::Quadratic(law::Quadratic {
@@ -304,7 +321,7 @@ impl Friction {
             | Self::Cohesion(Cohesion { angle, mu, .. }) => self.coefficient(look, *angle, *mu)?,
             Self::Samosat(law) => self.coefficient(look, None, Some(law.mu))?,
             Self::PouliquenForterre(law) => law.mu1,
-            Self::MuI(law) => law.mu1,
+            Self::MuI(law) => law.mu_s,
             Self::Bingham(_) | Self::HerschelBulkley(_) | Self::Quadratic(_) => 0.0,
         };
         self.check_numbers(look, key)?;
@@ -335,24 +352,24 @@ impl Friction {
                 look.positive(&key("gamma"), Some(law.gamma))?;
             }
             Self::MuI(law) => {
-                look.not_negative(&key("mu1"), Some(law.mu1))?;
-                let above = |mu: f64| mu > law.mu1 && mu.is_finite();
-                look.number(&key("mu2"), law.mu2, above, "a number above mu1")?;
+                look.not_negative(&key("mu_s"), Some(law.mu_s))?;
+                let above = |mu: f64| mu > law.mu_s && mu.is_finite();
+                look.number(&key("mu_2"), law.mu_2, above, "a number above mu_s")?;
                 look.positive(&key("i0"), Some(law.i0))?;
                 look.positive(&key("grain"), Some(law.grain))?;
                 let share = |phi: f64| phi > 0.0 && phi <= 1.0;
                 look.number(&key("phi"), law.phi, share, "a share above 0, at most 1")?;
             }
             Self::Bingham(law) => {
-                look.not_negative(&key("tau0"), Some(law.tau0))?;
-                look.positive(&key("eta"), Some(law.eta))?;
+                look.not_negative(&key("yield"), Some(law.yield_stress))?;
+                look.positive(&key("viscosity"), Some(law.viscosity))?;
             }
             Self::HerschelBulkley(law) => {
-                look.not_negative(&key("tau0"), Some(law.tau0))?;
-                look.positive(&key("k"), Some(law.k))?;
+                look.not_negative(&key("yield"), Some(law.yield_stress))?;
+                look.positive(&key("consistency"), Some(law.consistency))?;
                 // The viscosity of a step is that of the speed before: beyond 2 that does not settle.
                 let usual = |n: f64| (0.3..=1.5).contains(&n);
-                look.number(&key("n"), law.n, usual, "an exponent from 0.3 to 1.5")?;
+                look.number(&key("exponent"), law.exponent, usual, "an exponent from 0.3 to 1.5")?;
             }
             Self::Quadratic(law) => {
                 look.not_negative(&key("tau0"), Some(law.tau0))?;
