@@ -49,7 +49,7 @@ impl Case {
     /// # Errors
     /// As [`Case::read`]; an error in an override names it.
     pub fn read_with(path: &Path, overrides: &[String]) -> Result<Self, CaseError> {
-        Self::parse_with(&read_case(path)?, &path.display().to_string(), overrides)
+        Self::parse_with(&read_case(path, &kinds::tables())?, &path.display().to_string(), overrides)
     }
 
     /// Checks ranges, combinations, formulas and files, and evaluates the case: all that can be said before work starts.

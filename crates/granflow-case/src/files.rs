@@ -2,7 +2,7 @@
 
 use std::cell::RefCell;
 use std::fmt::Debug;
-use std::io;
+use std::io::{self, Read};
 use std::path::{Path, PathBuf};
 
 use super::fault::CaseError;
@@ -143,18 +143,47 @@ impl FileAccess for Disk {
     }
 }
 
-/// The text of a case file; one that cannot be read is answered with the nearest name that exists.
-pub(crate) fn read_case(path: &Path) -> Result<String, CaseError> {
+/// A longer text is no case [bytes].
+const LONGEST: u64 = 1 << 24;
+
+/// The text of a case file; one that cannot be read is answered with the nearest name that exists, and nothing is shown of one that
+/// is no case: no line of it begins with one of `tables`.
+pub(crate) fn read_case(path: &Path, tables: &[String]) -> Result<String, CaseError> {
     let name = path.display().to_string();
-    let bytes = Disk.bytes(path).map_err(|error| {
+    let bytes = start_of(path).map_err(|error| {
         with_neighbour(
             CaseError::unreadable(&name, format!("cannot read the case file: {error}")),
             path,
             &Disk,
         )
     })?;
-    String::from_utf8(bytes)
-        .map_err(|_| CaseError::unreadable(&name, "this is not UTF-8 text, so it is no case file".to_owned()))
+    let unlike = |why: &str| {
+        CaseError::new(&name, "", None, "", format!("this is no case file: {why}"))
+            .help("`granflow new --list` shows the kinds of cases to start from")
+    };
+    if bytes.len() as u64 > LONGEST {
+        return Err(unlike("it is longer than 16 MiB"));
+    }
+    let text = String::from_utf8(bytes).map_err(|_| unlike("it is not UTF-8 text").file())?;
+    if !text.lines().any(|line| tables.iter().any(|table| table == first_word(line))) {
+        let tables = tables.iter().map(|table| format!("[{table}]")).collect::<Vec<_>>().join(", ");
+        return Err(unlike(&format!("it has none of the tables {tables}")));
+    }
+    Ok(text)
+}
+
+/// The content of a file, as far as it may be a case.
+fn start_of(path: &Path) -> io::Result<Vec<u8>> {
+    let mut bytes = Vec::new();
+    std::fs::File::open(path)?.take(LONGEST + 1).read_to_end(&mut bytes)?;
+    Ok(bytes)
+}
+
+/// The table or key that a line of TOML begins with.
+fn first_word(line: &str) -> &str {
+    let line = line.trim_start_matches(['[', '"', '\'', ' ', '\t', '\u{feff}']);
+    let end = line.find(|sign: char| !sign.is_ascii_alphanumeric() && sign != '_');
+    &line[..end.unwrap_or(line.len())]
 }
 
 /// Adds the nearest name to an error about a file that cannot be read.

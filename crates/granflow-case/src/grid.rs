@@ -4,7 +4,7 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::fault::CaseError;
-use super::look::Look;
+use super::look::{LARGEST, Look};
 use super::memory;
 
 /// More cells than any machine holds.
@@ -85,7 +85,10 @@ pub struct Axis {
 impl Axis {
     fn check(&self, look: &Look, key: &str) -> Result<(), CaseError> {
         for (end, value) in [("from", self.from), ("to", self.to)] {
-            look.number(&format!("{key}.{end}"), value, |_| true, "a finite number")?;
+            let near = |value: f64| value.abs() <= LARGEST;
+            let cure = "take a unit of length in which the grid is neither huge nor tiny";
+            look.number(&format!("{key}.{end}"), value, near, "a number between -1e12 and 1e12")
+                .map_err(|error| error.help(cure))?;
         }
         let (from, to, cells) = (self.from, self.to, self.cells);
         if from >= to {
@@ -100,8 +103,12 @@ impl Axis {
             return Err(look.source.fault(&cells_key, format!("found {cells} cells, expected at least 3")));
         }
         let width = self.width();
-        if !(width > 0.0 && from + width > from && to - width < to) {
-            return Err(look.source.fault(&cells_key, "the cells are too small to be told apart"));
+        if !(width >= 1.0 / LARGEST && from + width > from && to - width < to) {
+            return Err(look.fault(
+                &cells_key,
+                format!("the cells are {width:e} wide, too small to be told apart"),
+                "take fewer cells, or a unit of length in which they are wider than 1e-12",
+            ));
         }
         Ok(())
     }

@@ -117,6 +117,15 @@ impl Listed {
     }
 }
 
+/// The tables by which a case is known from other files, in the order of the alphabet.
+pub(crate) fn tables() -> Vec<String> {
+    let mut tables: Vec<String> = KINDS.iter().flat_map(|kind| (kind.tables)()).collect();
+    tables.retain(|name| !matches!(name.as_str(), "title" | "model"));
+    tables.sort();
+    tables.dedup();
+    tables
+}
+
 /// The words of a case, of the kind that it says.
 pub(crate) fn read(source: &Source) -> Result<Arc<dyn Words>, CaseError> {
     let kind = choose(source)?;

@@ -5,6 +5,10 @@ use super::files::{self, FileAccess};
 use super::source::Source;
 use std::path::{Path, PathBuf};
 
+/// The largest number that a length, a thickness, a speed or a property of the material may be, and one by the smallest size of a
+/// cell: areas, pressures and energies made of them are then numbers in single precision too, in which maps are kept.
+pub(crate) const LARGEST: f64 = 1e12;
+
 /// The text of a case and the files it may name.
 #[derive(Clone, Copy)]
 pub(crate) struct Look<'a> {
@@ -47,6 +51,12 @@ impl Look<'_> {
     /// A number > 0, where there is one.
     pub fn positive(&self, key: &str, value: Option<f64>) -> Result<(), CaseError> {
         value.map_or(Ok(()), |value| self.number(key, value, |v| v > 0.0, "a number > 0"))
+    }
+
+    /// A number > 0 of a usual size, where there is one.
+    pub fn usual(&self, key: &str, value: Option<f64>) -> Result<(), CaseError> {
+        let fits = |v: f64| v > 0.0 && v <= LARGEST;
+        value.map_or(Ok(()), |value| self.number(key, value, fits, "a number > 0, at most 1e12"))
     }
 
     /// A number >= 0, where there is one.

@@ -10,7 +10,7 @@ use super::choice::{Plain, plain_or_table};
 use super::fault::{CaseError, PartFault};
 use super::formula::Formula;
 use super::grid::Points;
-use super::look::Look;
+use super::look::{LARGEST, Look};
 
 /// A quantity over the grid: a number, or one of the shapes.
 #[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
@@ -207,7 +207,7 @@ impl Quantity {
 }
 
 impl Look<'_> {
-    /// A quantity at all points, 0 where the case does not say; every value is finite.
+    /// A quantity at all points, 0 where the case does not say; every value is finite and of a usual size.
     pub fn evaluate(
         &self,
         points: &Points,
@@ -216,12 +216,14 @@ impl Look<'_> {
     ) -> Result<Vec<f64>, CaseError> {
         let quantity = quantity.unwrap_or(&Quantity::Constant(0.0));
         let values = quantity.on(points, self).map_err(|fault| self.part_fault(key, fault))?;
-        match values.iter().position(|value| !value.is_finite()) {
+        let usual = |value: f64| value.abs() <= LARGEST;
+        match values.iter().position(|value| !usual(*value)) {
             None => Ok(values),
-            Some(index) => Err(self
-                .source
-                .fault(key, format!("the value is {} at {}", values[index], points.place(index)))
-                .help("every cell needs a finite number")),
+            Some(index) => Err(self.fault(
+                key,
+                format!("the value is {:?} at {}", values[index], points.place(index)),
+                "every cell needs a finite number, between -1e12 and 1e12",
+            )),
         }
     }
 

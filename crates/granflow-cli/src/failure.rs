@@ -10,6 +10,7 @@ use granflow::results::FilesError;
 use granflow::session::RunError;
 use granflow::sinks::BeginError;
 
+use crate::plain::plain;
 use crate::snippet::{self, Ink};
 
 /// Why a command did not do what it was asked.
@@ -63,15 +64,14 @@ impl Failure {
     /// Prints the failure on standard error and gives the exit status.
     pub fn report(self) -> ExitCode {
         let status = ExitCode::from(self.status());
-        let text = match self {
-            Self::Usage { message, cure } => format!("error: {message}\n  help: {cure}\n"),
-            Self::Case(error) => snippet::shown(&error, Ink::of_standard_error()),
+        match self {
+            Self::Usage { message, cure } => tell(&format!("error: {message}\n  help: {cure}\n")),
+            Self::Case(error) => send(&snippet::shown(&error, Ink::of_standard_error())),
             Self::Verdict(message) | Self::Computation(message) | Self::File(message) => {
-                format!("error: {message}\n")
+                tell(&format!("error: {message}\n"));
             }
-            Self::Interrupted(message) => format!("interrupted: {message}\n"),
-        };
-        tell(&text);
+            Self::Interrupted(message) => tell(&format!("interrupted: {message}\n")),
+        }
         status
     }
 }
@@ -117,10 +117,10 @@ impl From<FilesError> for Failure {
     }
 }
 
-/// Prints on standard output; a reader that closed the pipe (`| head`) is no failure.
+/// Prints on standard output, [`plain`]; a reader that closed the pipe (`| head`) is no failure.
 pub fn print(text: &str) -> Result<(), Failure> {
     let mut out = io::stdout().lock();
-    match out.write_all(text.as_bytes()).and_then(|()| out.flush()) {
+    match out.write_all(plain(text).as_bytes()).and_then(|()| out.flush()) {
         Err(error) if error.kind() != io::ErrorKind::BrokenPipe => {
             Err(Failure::File(format!("cannot write to standard output: {error}")))
         }
@@ -128,8 +128,13 @@ pub fn print(text: &str) -> Result<(), Failure> {
     }
 }
 
-/// Writes on standard error at once; nobody is left to be told if it is closed.
+/// Writes on standard error at once, [`plain`].
 pub fn tell(text: &str) {
+    send(&plain(text));
+}
+
+/// Writes on standard error at once, with the codes of a terminal that the text holds; nobody is left to be told if it is closed.
+pub fn send(text: &str) {
     let mut out = io::stderr().lock();
     let _ = out.write_all(text.as_bytes()).and_then(|()| out.flush());
 }

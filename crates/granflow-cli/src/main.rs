@@ -14,6 +14,7 @@ mod interrupt;
 mod mountain;
 mod new;
 mod page;
+mod plain;
 mod plot;
 mod progress;
 mod reproduce;

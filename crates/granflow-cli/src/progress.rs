@@ -8,7 +8,8 @@ use std::time::{Duration, Instant};
 use granflow::Words;
 use granflow::run::Run;
 
-use crate::failure::tell;
+use crate::failure::{send, tell};
+use crate::plain::plain;
 
 /// Between two plain lines.
 const PLAIN: Duration = Duration::from_secs(5);
@@ -121,7 +122,7 @@ impl Progress {
         self.shown = Some(Instant::now());
         let line = status.line(begin, self.start.elapsed());
         match self.how {
-            Shown::Bar => tell(&bar(status.share().unwrap_or(0.0), &line)),
+            Shown::Bar => send(&bar(status.share().unwrap_or(0.0), &plain(&line))),
             Shown::Lines => tell(&format!("{line}\n")),
             Shown::Nowhere => {}
         }
@@ -130,7 +131,7 @@ impl Progress {
     /// Takes the bar away; the lines that follow stand alone.
     pub fn finish(&self) {
         if self.how == Shown::Bar && self.shown.is_some() {
-            tell(CLEAR);
+            send(CLEAR);
         }
     }
 }

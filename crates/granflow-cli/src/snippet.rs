@@ -7,8 +7,14 @@ use std::ops::Range;
 use granflow::case::CaseError;
 use unicode_width::UnicodeWidthStr;
 
+use crate::plain::plain;
+
 /// Columns from one tab stop to the next.
 const TAB: usize = 4;
+/// Bytes of a line around a place that are shown before it, and in all.
+const SHOWN: [usize; 2] = [60, 160];
+/// A longer line of a message is cut in its middle [characters].
+const LINE: usize = 600;
 /// What stands at the mark.
 const LABEL: &str = "here";
 
@@ -56,13 +62,13 @@ impl Ink {
 
 /// The whole message, with an empty line behind it.
 pub fn shown(error: &CaseError, ink: Ink) -> String {
-    let mut out = indented(&error.headline(), &format!("  {} ", ink.error("×")), &ink.error("  │ "));
+    let mut out = indented(&plain(&error.headline()), &format!("  {} ", ink.error("×")), &ink.error("  │ "));
     if let (Some(span), Some((line, column))) = (error.span(), error.line_column()) {
         let place = format!("{}:{line}:{column}", error.source_name());
-        out += &Snippet::new(error.text(), span).drawn(&place, ink);
+        out += &Snippet::new(error.text(), span).drawn(&plain(&place), ink);
     }
     if !error.help_lines().is_empty() {
-        out += &indented(&error.help_lines().join("\n"), &ink.help("  help: "), "        ");
+        out += &indented(&plain(&error.help_lines().join("\n")), &ink.help("  help: "), "        ");
     }
     out + "\n"
 }
@@ -70,17 +76,28 @@ pub fn shown(error: &CaseError, ink: Ink) -> String {
 /// The lines of a text, the first behind `first` and the others behind `rest`.
 fn indented(text: &str, first: &str, rest: &str) -> String {
     let lead = std::iter::once(first).chain(std::iter::repeat(rest));
-    text.lines().zip(lead).map(|(line, lead)| format!("{lead}{}\n", line.trim_end())).collect()
+    text.lines().zip(lead).map(|(line, lead)| format!("{lead}{}\n", cut(line.trim_end()))).collect()
 }
 
-/// The text with its tabs as spaces.
+/// A line of a message; of one without end its begin and its end.
+fn cut(line: &str) -> String {
+    let length = line.chars().count();
+    if length <= LINE {
+        return line.to_owned();
+    }
+    let (begin, end): (String, String) =
+        (line.chars().take(LINE / 2).collect(), line.chars().skip(length - LINE / 4).collect());
+    format!("{begin} ... {end}")
+}
+
+/// The text, [`plain`], with its tabs as spaces.
 fn untabbed(text: &str) -> String {
     let mut out = String::new();
     for (k, part) in text.split('\t').enumerate() {
         if k > 0 {
             out += &" ".repeat(TAB - out.width() % TAB);
         }
-        out += part;
+        out += &plain(part);
     }
     out
 }
@@ -104,7 +121,27 @@ impl<'a> Snippet<'a> {
         let line = |at: usize| text[..at].matches('\n').count();
         let begin = |at: usize| text[..at].rfind('\n').map_or(0, |newline| newline + 1);
         let lines = text.split('\n').map(|line| line.trim_end_matches('\r')).collect();
-        Self { lines, first: line(start), last: line(end), bytes: start - begin(start)..end - begin(end) }
+        let bytes = start - begin(start)..end - begin(end);
+        let mut snippet = Self { lines, first: line(start), last: line(end), bytes };
+        snippet.cut();
+        snippet
+    }
+
+    /// Of lines without end keep what is around the place.
+    fn cut(&mut self) {
+        let [before, all] = SHOWN;
+        let marked = self.first;
+        let start = if self.first == self.last { self.bytes.start.saturating_sub(before) } else { 0 };
+        let shown = self.first.saturating_sub(1)..(self.last + 2).min(self.lines.len());
+        for k in shown.filter(|k| self.lines[*k].len() > 2 * all).collect::<Vec<_>>() {
+            let line = self.lines[k];
+            let from = line.floor_char_boundary(if k == marked { start } else { 0 });
+            self.lines[k] = &line[from..line.floor_char_boundary(from + all)];
+            if k == marked {
+                let within = |byte: usize| byte.saturating_sub(from).min(self.lines[k].len());
+                self.bytes = within(self.bytes.start)..within(self.bytes.end);
+            }
+        }
     }
 
     /// The frame with the lines of the place, one more on both sides, and the mark.
@@ -198,6 +235,20 @@ mod tests {
             behind,
             "   ╭─[a.toml:1:10]\n 1 │ steps = [\n   ·          ▲\n   ·          ╰── here\n   ╰────\n"
         );
+    }
+
+    #[test]
+    fn of_a_line_without_end_the_place_is_shown() {
+        let text = format!("a = \"{}\" + {}\n", "x".repeat(9000), "y".repeat(9000));
+        let shown = drawn(&text, "+");
+        assert!(shown.len() < 1000 && shown.contains("x\" + yyy") && shown.contains("·"), "{shown}");
+        let marked = shown.lines().nth(2).unwrap();
+        assert_eq!(
+            marked.chars().position(|sign| sign == '┬'),
+            shown.lines().nth(1).unwrap().chars().position(|sign| sign == '+')
+        );
+        assert!(drawn(&text, &text[4..9500]).len() < 1500);
+        assert!(indented(&"z".repeat(9000), "", "").len() < 700);
     }
 
     #[test]

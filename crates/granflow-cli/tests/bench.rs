@@ -1,17 +1,15 @@
 //! `granflow bench` as a user meets it, on grids too small to say anything of the machine.
 
+mod support;
+
 use serde_json::Value;
 use std::path::Path;
-use std::process::{Command, Output};
+use std::process::Output;
 use std::time::Instant;
+use support::{granflow, said, told};
 
 fn bench(folder: &Path, arguments: &[&str]) -> Output {
-    let mut command = Command::new(env!("CARGO_BIN_EXE_granflow"));
-    command.current_dir(folder).arg("bench").args(arguments).output().expect("the program starts")
-}
-
-fn text(bytes: &[u8]) -> String {
-    String::from_utf8_lossy(bytes).into_owned()
+    granflow(folder, &[&["bench"], arguments].concat())
 }
 
 fn number(value: &Value) -> f64 {
@@ -23,8 +21,8 @@ fn every_scheme_has_its_row_on_every_number_of_threads() {
     let folder = tempfile::tempdir().unwrap();
     let sizes = ["--quick", "--cells", "64", "--threads", "1", "--threads", "2", "--json", "deep/speed.json"];
     let output = bench(folder.path(), &sizes);
-    let said = text(&output.stdout);
-    assert!(output.status.success(), "{}", text(&output.stderr));
+    let text = said(&output);
+    assert!(output.status.success(), "{}", told(&output));
     let found: Value =
         serde_json::from_slice(&std::fs::read(folder.path().join("deep/speed.json")).unwrap()).unwrap();
     assert_eq!([&found["complete"], &found["quick"]], [true; 2]);
@@ -37,7 +35,7 @@ fn every_scheme_has_its_row_on_every_number_of_threads() {
     for row in rows {
         let (name, mcups) = (row["scheme"].as_str().unwrap(), number(&row["mcups"]));
         // The table shows what the file holds.
-        let columns: Vec<&str> = said
+        let columns: Vec<&str> = text
             .lines()
             .map(|line| line.split_whitespace().collect::<Vec<_>>())
             .find(|words| {
@@ -45,7 +43,7 @@ fn every_scheme_has_its_row_on_every_number_of_threads() {
                 words.first() == Some(&name)
                     && words.get(threads) == Some(&row["threads"].to_string().as_str())
             })
-            .unwrap_or_else(|| panic!("{name} in {said}"));
+            .unwrap_or_else(|| panic!("{name} in {text}"));
         assert!(columns.contains(&format!("{mcups:.1}").as_str()), "{mcups} in {columns:?}");
         // What is derived follows from what is measured.
         let repeats: Vec<f64> = row["repeats"].as_array().unwrap().iter().map(number).collect();
@@ -71,16 +69,16 @@ fn what_ran_beside_is_compared_with() {
     let arguments =
         ["--quick", "--cells", "64", "--threads", "1", "--scheme", "balanced", "--json", "speed.json"];
     let output = bench(folder.path(), &[&arguments[..], &["--beside", command]].concat());
-    assert!(output.status.success(), "{}", text(&output.stderr));
+    assert!(output.status.success(), "{}", told(&output));
     let found: Value =
         serde_json::from_slice(&std::fs::read(folder.path().join("speed.json")).unwrap()).unwrap();
     let row = &found["rows"][0];
     let ratio = number(&row["mcups"]) / 20.0;
     assert!((number(&row["ratios"]["theirs 9x9"]) / ratio - 1.0).abs() < 1e-12, "{row}");
     assert_eq!(found["beside"].as_array().unwrap().len(), 4);
-    let said = text(&output.stdout);
-    let last = said.lines().last().unwrap();
-    assert!(last.starts_with("balanced ") && last.ends_with(&format!("{ratio:.2}")), "{said}");
+    let text = said(&output);
+    let last = text.lines().last().unwrap();
+    assert!(last.starts_with("balanced ") && last.ends_with(&format!("{ratio:.2}")), "{text}");
 }
 
 #[test]
@@ -104,7 +102,7 @@ fn what_is_wrong_is_said_before_work_starts() {
     for (arguments, status, fragments) in wrong {
         let clock = Instant::now();
         let output = bench(folder.path(), arguments);
-        let message = text(&output.stderr);
+        let message = told(&output);
         assert_eq!(output.status.code(), Some(status), "{arguments:?}: {message}");
         assert!(fragments.iter().all(|part| message.contains(part)), "{arguments:?}: {message}");
         // A row takes longer than that.
@@ -118,7 +116,7 @@ fn dry_cells_cost_little() {
     let mcups = |wet: &str| {
         let sizes = ["--cells", "400", "--threads", "1", "--scheme", "balanced", "--json", "speed.json"];
         let output = bench(folder.path(), &[&["--quick", "--wet", wet], &sizes[..]].concat());
-        assert!(output.status.success(), "{}", text(&output.stderr));
+        assert!(output.status.success(), "{}", told(&output));
         let found = std::fs::read(folder.path().join("speed.json")).unwrap();
         let found: Value = serde_json::from_slice(&found).unwrap();
         assert_eq!(found["rows"][0]["share_of_triad"].is_null(), wet != "1");
@@ -134,6 +132,6 @@ fn the_instructions_asked_for_are_taken() {
     let folder = tempfile::tempdir().unwrap();
     let arguments =
         ["--quick", "--cells", "64", "--threads", "1", "--scheme", "balanced", "--instructions", "scalar"];
-    let said = text(&bench(folder.path(), &arguments).stdout);
-    assert!(said.starts_with("instructions: scalar"), "{said}");
+    let text = said(&bench(folder.path(), &arguments));
+    assert!(text.starts_with("instructions: scalar"), "{text}");
 }

@@ -1,7 +1,9 @@
 //! The program as a user meets it: exit statuses, and messages that name the place and the cure.
 
+mod support;
+
 use std::path::Path;
-use std::process::{Command, Output};
+use support::{granflow, said, told};
 
 /// A case in good order; `{...}` lines are replaced by each test.
 const GOOD: &str = r#"title = "test"
@@ -35,18 +37,6 @@ thickness = 1.0
 until = "rest"
 end = 300.0
 "#;
-
-fn granflow(folder: &Path, arguments: &[&str]) -> Output {
-    Command::new(env!("CARGO_BIN_EXE_granflow"))
-        .current_dir(folder)
-        .args(arguments)
-        .output()
-        .expect("the program starts")
-}
-
-fn told(output: &Output) -> String {
-    String::from_utf8_lossy(&output.stderr).into_owned()
-}
 
 /// What was changed, the line the message must name (0: none), fragments of the message, the exit status.
 type Bad = (&'static str, &'static str, usize, &'static [&'static str], i32);
@@ -335,7 +325,7 @@ fn overrides_are_laid_over_the_case_and_blamed_by_name() {
     std::fs::write(folder.path().join("case.toml"), GOOD).expect("a case");
     let set = |change: &str| {
         let output = granflow(folder.path(), &["check", "case.toml", "--set", change]);
-        (output.status.code(), String::from_utf8_lossy(&output.stdout).into_owned(), told(&output))
+        (output.status.code(), said(&output), told(&output))
     };
     assert!(set("grid.x.cells=400").1.contains("400 cells"));
     assert!(set("material.slope=5 deg").1.contains("5.0000 deg"), "a word needs no quotes");
@@ -364,7 +354,7 @@ fn what_may_surprise_is_said() {
     std::fs::write(folder.path().join("case.toml"), GOOD).expect("a case");
     let said = |change: &[&str]| {
         let arguments = [&["check", "case.toml"], change].concat();
-        String::from_utf8_lossy(&granflow(folder.path(), &arguments).stdout).into_owned()
+        said(&granflow(folder.path(), &arguments))
     };
     let film = said(&["--set", "scheme.name=verfahren_5", "--set", "scheme.film=1e-6"]);
     assert!(film.contains("scheme.film has no effect") && film.contains("film 0e0"), "{film}");
@@ -391,7 +381,7 @@ fn a_mistyped_file_is_answered_with_the_nearest_name() {
 fn every_kind_is_written_once_and_is_in_order() {
     let folder = tempfile::tempdir().expect("a folder");
     let list = granflow(folder.path(), &["new", "--list"]);
-    let list = String::from_utf8_lossy(&list.stdout).into_owned();
+    let list = said(&list);
     let kinds: Vec<&str> = list.lines().filter_map(|line| line.split_whitespace().next()).collect();
     let avalanches = ["silo", "inclined_silo", "parabola", "riemann", "sine", "plane"];
     let sandpiles = [
@@ -426,7 +416,7 @@ fn the_estimates_are_right() {
     let folder = tempfile::tempdir().expect("a folder");
     std::fs::write(folder.path().join("case.toml"), GOOD).expect("a case");
     let output = granflow(folder.path(), &["check", "case.toml", "--set", "time={end=5.0}"]);
-    let said = String::from_utf8_lossy(&output.stdout).into_owned();
+    let said = said(&output);
     assert!(said.contains("5000 of 1.000e-3 in time"), "{said}");
     // 40 cells of 2.3 and 200 of 0.3, 0.05 wide
     assert!(said.contains("mass 7.600000, 240 wet cells"), "{said}");
@@ -439,7 +429,7 @@ fn a_sandpile_is_described() {
     let folder = tempfile::tempdir().expect("a folder");
     assert_eq!(granflow(folder.path(), &["new", "sandpile_l", "l.toml"]).status.code(), Some(0));
     let output = granflow(folder.path(), &["check", "l.toml"]);
-    let said = String::from_utf8_lossy(&output.stdout).into_owned();
+    let said = said(&output);
     // three quarters of the square, 40 edges along each direction of which the wall takes 20
     assert!(said.contains("1200 cells, 0.750000 in all"), "{said}");
     assert!(said.contains("open: 40 left, 40 right, 40 bottom, 20 top; walls: 20 top"), "{said}");
@@ -447,7 +437,7 @@ fn a_sandpile_is_described() {
     // 0.225 * 0.025/2
     assert!(said.contains("of 2.812e-3 in time") && said.contains("changes below 1e-8"), "{said}");
     let direct = ["check", "l.toml", "--set", "time={until=\"steady\",method=\"direct\"}"];
-    let said = String::from_utf8_lossy(&granflow(folder.path(), &direct).stdout).into_owned();
+    let said = said(&granflow(folder.path(), &direct));
     assert!(said.contains("at the equilibrium, computed directly"), "{said}");
     // what is printed is a case again
     let resolved = said.split_once(":\n\n").expect("the resolved case").1;

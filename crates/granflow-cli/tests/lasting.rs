@@ -3,6 +3,8 @@
 
 #![cfg(unix)]
 
+mod support;
+
 use netcdf_reader::NcFile;
 use std::ffi::OsStr;
 use std::fs;
@@ -10,16 +12,7 @@ use std::os::unix::ffi::OsStrExt;
 use std::path::{Path, PathBuf};
 use std::process::{Child, Command, Output, Stdio};
 use std::time::{Duration, Instant};
-
-const PROGRAM: &str = env!("CARGO_BIN_EXE_granflow");
-
-fn granflow(folder: &Path, arguments: &[&str]) -> Output {
-    Command::new(PROGRAM).current_dir(folder).args(arguments).output().expect("the program starts")
-}
-
-fn told(output: &Output) -> String {
-    String::from_utf8_lossy(&output.stderr).into_owned()
-}
+use support::{PROGRAM, granflow, told};
 
 /// A line of shell with the program as `$GRANFLOW`.
 fn shell(folder: &Path, line: &str) -> Output {

@@ -1,15 +1,9 @@
 //! `granflow reproduce` through the binary: rows, figures, page, and what it says to a name it does not know.
 
+mod support;
+
 use std::path::Path;
-use std::process::{Command, Output};
-
-fn granflow(arguments: &[&str]) -> Output {
-    Command::new(env!("CARGO_BIN_EXE_granflow")).args(arguments).output().expect("granflow runs")
-}
-
-fn text(bytes: &[u8]) -> String {
-    String::from_utf8_lossy(bytes).into_owned()
-}
+use support::{granflow, said, told};
 
 /// Width and height of a PNG that is whole: signature, chunks end to end, IHDR first and IEND last.
 fn size_of_png(path: &Path) -> (u32, u32) {
@@ -18,7 +12,7 @@ fn size_of_png(path: &Path) -> (u32, u32) {
     assert!(bytes.starts_with(b"\x89PNG\r\n\x1a\n"), "{}", path.display());
     let (mut at, mut kinds) = (8, Vec::new());
     while at < bytes.len() {
-        kinds.push(text(&bytes[at + 4..at + 8]));
+        kinds.push(String::from_utf8_lossy(&bytes[at + 4..at + 8]).into_owned());
         at += 12 + word(at) as usize;
     }
     assert_eq!(at, bytes.len(), "{} is cut off", path.display());
@@ -32,9 +26,9 @@ fn size_of_png(path: &Path) -> (u32, u32) {
 fn the_report_is_reproduced() {
     let folder = tempfile::tempdir().expect("a folder");
     let out = folder.path().join("report");
-    let done = granflow(&["reproduce", "report", "--out", out.to_str().expect("a path")]);
-    assert!(done.status.success(), "{}", text(&done.stderr));
-    let said = text(&done.stdout);
+    let done = granflow(Path::new("."), &["reproduce", "report", "--out", out.to_str().expect("a path")]);
+    assert!(done.status.success(), "{}", told(&done));
+    let said = said(&done);
 
     let rows: serde_json::Value =
         serde_json::from_slice(&std::fs::read(out.join("tables.json")).expect("tables.json")).expect("JSON");
@@ -80,10 +74,10 @@ fn the_report_is_reproduced() {
 fn the_sandpiles_are_reproduced() {
     let folder = tempfile::tempdir().expect("a folder");
     let out = folder.path().join("sandpiles");
-    let done = granflow(&["reproduce", "sandpiles", "--out", out.to_str().expect("a path")]);
-    assert!(done.status.success(), "{}", text(&done.stderr));
+    let done = granflow(Path::new("."), &["reproduce", "sandpiles", "--out", out.to_str().expect("a path")]);
+    assert!(done.status.success(), "{}", told(&done));
     // Tables 1 and 2 have 30 and 24 numbers, and 4 by a formula; a pile that is no longer steady would lose its 4 rows.
-    let said = text(&done.stdout);
+    let said = said(&done);
     assert!(said.contains("0 of 87 rows fail; 12 figures"), "{said}");
     let page = std::fs::read_to_string(out.join("index.html")).expect("index.html");
     assert_eq!(page.matches("<img").count(), 12);
@@ -98,9 +92,9 @@ fn the_sandpiles_are_reproduced() {
 fn an_unknown_paper_is_answered_with_the_nearest_and_the_list() {
     let folder = tempfile::tempdir().expect("a folder");
     let out = folder.path().join("none");
-    let failed = granflow(&["reproduce", "thesys", "--out", out.to_str().expect("a path")]);
+    let failed = granflow(Path::new("."), &["reproduce", "thesys", "--out", out.to_str().expect("a path")]);
     assert_eq!(failed.status.code(), Some(2));
-    let said = text(&failed.stderr);
+    let said = told(&failed);
     for part in
         ["no paper `thesys`", "did you mean `thesis`", "kaland_2007", "kaland_struckmeier_2007", "sandpiles"]
     {

@@ -1,5 +1,7 @@
 //! The sandpiles in `cases/`, computed by the program on coarse grids: what their comments promise comes out.
 
+mod support;
+
 use granflow::Case;
 use granflow::output::ledger::Ledger;
 use granflow::output::summary::{StopReason, Summary};
@@ -8,17 +10,15 @@ use granflow::session::Options;
 use ndarray::Axis;
 use netcdf_reader::NcFile;
 use std::path::Path;
-use std::process::{Command, Output};
 use std::sync::atomic::{AtomicBool, Ordering};
+use support::{granflow, told};
 
 /// Books close to this share of what was poured and what lay there at the start.
 const ROUNDING: f64 = 1e-14;
 
-fn granflow(folder: &Path, arguments: &[&str]) -> Output {
-    let cases = concat!(env!("CARGO_MANIFEST_DIR"), "/../../cases");
-    let arguments = arguments.iter().map(|argument| argument.replace("cases", cases));
-    let mut command = Command::new(env!("CARGO_BIN_EXE_granflow"));
-    command.current_dir(folder).args(arguments).output().expect("the program starts")
+/// The file of a case that `granflow new` writes.
+fn case_file(name: &str) -> String {
+    format!("{}/../../cases/{name}.toml", env!("CARGO_MANIFEST_DIR"))
 }
 
 /// A finished run of a case.
@@ -31,7 +31,7 @@ struct Done {
 /// Runs a case by the first-order scheme on `cells` along each axis, with further changes.
 fn run(name: &str, cells: usize, changes: &[&str]) -> Done {
     let folder = tempfile::tempdir().unwrap();
-    let case = format!("cases/{name}.toml");
+    let case = case_file(name);
     let mut sets = vec![
         "scheme={name=\"first_order\"}".to_owned(),
         format!("grid.x.cells={cells}"),
@@ -44,7 +44,7 @@ fn run(name: &str, cells: usize, changes: &[&str]) -> Done {
     let mut arguments = vec!["run", &case, "--out", "out", "--quiet", "--threads", "1"];
     arguments.extend(sets.iter().flat_map(|set| ["--set", set.as_str()]));
     let output = granflow(folder.path(), &arguments);
-    assert!(output.status.success(), "{name}: {}", String::from_utf8_lossy(&output.stderr));
+    assert!(output.status.success(), "{name}: {}", told(&output));
     let text = std::fs::read_to_string(folder.path().join("out/summary.json")).unwrap();
     let done = Done { summary: serde_json::from_str(&text).unwrap(), folder, cells };
     done.books_close(name);
@@ -124,7 +124,7 @@ fn what_grows_in_time_is_what_is_computed_at_once() {
         let grown = run(name, cells, &[height]);
         assert!(grown.steady(), "{name}: {}", grown.summary["stop_reason"]);
         let folder = tempfile::tempdir().unwrap();
-        let case = format!("cases/{name}.toml");
+        let case = case_file(name);
         let sets = [format!("grid.x.cells={cells}"), format!("grid.y.cells={cells}")];
         let output = granflow(
             folder.path(),
@@ -148,7 +148,7 @@ fn what_grows_in_time_is_what_is_computed_at_once() {
                 "output={files=[\"netcdf\"]}",
             ],
         );
-        assert!(output.status.success(), "{name}: {}", String::from_utf8_lossy(&output.stderr));
+        assert!(output.status.success(), "{name}: {}", told(&output));
         let text = std::fs::read_to_string(folder.path().join("out/summary.json")).unwrap();
         let direct = Done { summary: serde_json::from_str(&text).unwrap(), folder, cells };
         for layer in ["standing_layer", "rolling_layer"] {

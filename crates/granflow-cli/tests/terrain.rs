@@ -1,8 +1,11 @@
 //! What the program says of a terrain and of the files around it.
 
+mod support;
+
 use std::fmt::Write;
 use std::path::Path;
-use std::process::{Command, Output};
+use std::process::Output;
+use support::{granflow, said, told};
 
 const CASE: &str = r#"title = "test"
 [terrain]
@@ -23,11 +26,6 @@ files = []
 const RELEASE: &str = r#"{"type":"Feature","properties":null,"geometry":
     {"type":"Polygon","coordinates":[[[20,20],[40,20],[40,40],[20,40],[20,20]]]}}"#;
 
-fn granflow(folder: &Path, arguments: &[&str]) -> Output {
-    let mut program = Command::new(env!("CARGO_BIN_EXE_granflow"));
-    program.current_dir(folder).args(arguments).output().expect("the program runs")
-}
-
 /// A slope of 20 x 16 cells of 5 m, falling to the east, with other heights at some cells (column and row from the north-west).
 fn written(folder: &Path, odd: &[([usize; 2], f64)]) {
     let mut grid = String::from("ncols 20\nnrows 16\nxllcorner 0\nyllcorner 0\ncellsize 5\n");
@@ -44,8 +42,8 @@ fn written(folder: &Path, odd: &[([usize; 2], f64)]) {
     }
 }
 
-fn said(output: &Output) -> String {
-    String::from_utf8_lossy(&output.stdout).into_owned() + &String::from_utf8_lossy(&output.stderr)
+fn all(output: &Output) -> String {
+    said(output) + &told(output)
 }
 
 #[test]
@@ -54,7 +52,7 @@ fn check_shows_systems_heights_steps_volume_and_what_was_converted() {
     // A pit of 4 ft on a slope of 10 ft a cell: 24 ft below its western neighbour.
     written(folder.path(), &[([9, 6], 4900.0 - 4.0)]);
     let output = granflow(folder.path(), &["check", "case.toml"]);
-    let text = said(&output);
+    let text = all(&output);
     assert_eq!(output.status.code(), Some(0), "{text}");
     for line in [
         "terrain          20 x 16 cells of 5 m, 0 without elevation (0.0 %)",
@@ -76,7 +74,7 @@ fn check_and_run_warn_of_what_no_ground_has() {
     let folder = tempfile::tempdir().expect("a folder");
     written(folder.path(), &[([15, 3], 0.0)]);
     for command in [&["check", "case.toml"][..], &["run", "case.toml"]] {
-        let text = said(&granflow(folder.path(), command));
+        let text = all(&granflow(folder.path(), command));
         assert!(
             text.contains("warning") && text.contains("dem.asc: a cliff of 1481.3 m between two cells"),
             "{text}"

@@ -1,21 +1,16 @@
 //! `granflow verify` through the binary: rows with reasons, page, and what it says to names and folders that cannot be.
 
-use std::process::{Command, Output};
+mod support;
 
-fn granflow(arguments: &[&str]) -> Output {
-    Command::new(env!("CARGO_BIN_EXE_granflow")).args(arguments).output().expect("granflow runs")
-}
-
-fn text(bytes: &[u8]) -> String {
-    String::from_utf8_lossy(bytes).into_owned()
-}
+use std::path::Path;
+use support::{granflow, said, told};
 
 #[test]
 fn a_benchmark_is_verified() {
     let folder = tempfile::tempdir().expect("a folder");
     let out = folder.path().join("jump");
-    let done = granflow(&["verify", "j", "--quick", "--out", out.to_str().expect("a path")]);
-    assert!(done.status.success(), "{}{}", text(&done.stdout), text(&done.stderr));
+    let done = granflow(Path::new("."), &["verify", "j", "--quick", "--out", out.to_str().expect("a path")]);
+    assert!(done.status.success(), "{}{}", said(&done), told(&done));
     let rows: serde_json::Value =
         serde_json::from_slice(&std::fs::read(out.join("tables.json")).expect("tables.json")).expect("JSON");
     let rows = rows.as_array().expect("rows");
@@ -35,9 +30,10 @@ fn a_benchmark_is_verified() {
 fn an_unknown_benchmark_is_answered_with_the_list() {
     let folder = tempfile::tempdir().expect("a folder");
     let out = folder.path().join("none");
-    let failed = granflow(&["verify", "A", "I-Riter", "--out", out.to_str().expect("a path")]);
+    let failed =
+        granflow(Path::new("."), &["verify", "A", "I-Riter", "--out", out.to_str().expect("a path")]);
     assert_eq!(failed.status.code(), Some(2));
-    let said = text(&failed.stderr);
+    let said = told(&failed);
     for part in ["no benchmark `I-Riter`", "did you mean `I-Ritter`", "smooth-1D", "none for all"] {
         assert!(said.contains(part), "{said}");
     }
@@ -50,9 +46,9 @@ fn results_that_cannot_go_to_a_file_are_refused_before_any_work() {
     let file = folder.path().join("taken");
     std::fs::write(&file, "mine").expect("a file");
     for command in ["verify", "reproduce"] {
-        let failed = granflow(&[command, "--out", file.to_str().expect("a path")]);
+        let failed = granflow(Path::new("."), &[command, "--out", file.to_str().expect("a path")]);
         assert_eq!(failed.status.code(), Some(2), "{command}");
-        let said = text(&failed.stderr);
+        let said = told(&failed);
         assert!(said.contains("taken") && said.contains("it is a file") && said.contains("--out"), "{said}");
     }
     assert_eq!(std::fs::read_to_string(&file).expect("the file"), "mine");

@@ -15,7 +15,7 @@ pub struct Entry {
     pub mass_in: f64,
     /// Mass that left over the sides and inside them: left, right, bottom, top, and inside the grid.
     pub out: [f64; 5],
-    /// (mass - `mass_in` + mass out - mass at the start) / (mass at the start + `mass_in`).
+    /// (mass - `mass_in` + mass out - mass at the start) / (mass at the start + `mass_in` + what came over open edges).
     pub mass_error: f64,
     /// Cells that hold mass above a film.
     pub wet_cells: u64,

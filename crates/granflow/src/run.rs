@@ -8,6 +8,7 @@ mod drive;
 mod entry;
 mod field_view;
 mod frames;
+mod law;
 mod record;
 mod saved;
 mod simulated;
@@ -24,6 +25,7 @@ pub use frames::Frames;
 pub(crate) use frames::after;
 pub use granflow_case::{Ends, Until};
 pub use granflow_engine::simulation::{Failure, Totals};
+pub use law::{Broken, Laws, check_end, check_state};
 pub use record::Record;
 pub use saved::Saved;
 pub use simulated::{CellOf, Field, Numbers, Physics, Simulated, Value};
@@ -53,6 +55,10 @@ pub trait Run: Send + Sync {
     /// normal to the bed); none where there are no such maps.
     fn threshold(&self) -> Option<f64> {
         self.stepper().maps().map(granflow_engine::Maps::threshold)
+    }
+    /// What its states promise; [`check_state`] holds them to it.
+    fn laws(&self) -> Laws {
+        Laws::default()
     }
     /// Keep the kinetic energy after every step, for an end by energy.
     fn track_energy(&mut self);

@@ -5,7 +5,7 @@ use crate::output::checkpoint::{Origin, case_hash};
 use crate::output::folder::Folder;
 use crate::output::inputs::inputs;
 use crate::results::{FilesError, Finished, check_kinds};
-use crate::run::{DriveError, Failure, Run, drive};
+use crate::run::{DriveError, Run, drive};
 use crate::sinks::{BeginError, Callback, Files, Sink, Stop};
 use crate::{Checked, StartError};
 use granflow_case::RunPlan;
@@ -46,11 +46,11 @@ pub enum RunError {
     /// A figure or another file could not be made of the run.
     #[error(transparent)]
     Files(#[from] FilesError),
-    /// The computation failed; the state before is saved.
+    /// The computation failed, or its results break a law of their own; the state before is saved.
     #[error("{failure}; everything up to time {time} is saved in {}", saved.display())]
     Computation {
-        /// What happened.
-        failure: Failure,
+        /// What happened: a [`Failure`](crate::run::Failure) or a [`Broken`](crate::run::Broken).
+        failure: Box<DriveError>,
         /// Time of the last saved state.
         time: f64,
         /// Where.
@@ -120,10 +120,11 @@ impl Checked {
                 Ok(error) => RunError::Output(*error),
                 Err(_) => unreachable!("the other sinks have no errors"),
             }),
-            Err(DriveError::Step { failure, time }) => {
+            Err(failure) => {
+                let time = run.time();
                 let left = files.give_up(run, &failure.to_string())?;
                 let time = left.frames.times().last().copied().unwrap_or(time);
-                Err(RunError::Computation { failure, time, saved: left.result() })
+                Err(RunError::Computation { failure: Box::new(failure), time, saved: left.result() })
             }
         }
     }

@@ -10,7 +10,7 @@ use crate::fault::CaseError;
 use crate::grid::{Axis, Grid, Points};
 use crate::look::Look;
 use crate::output::{Defaults, ON_A_GRID, Output};
-use crate::plan::RunPlan;
+use crate::plan::{Ends, RunPlan};
 use crate::precision::Precision;
 use crate::quantity::Quantity;
 use crate::source::Missing;
@@ -187,6 +187,7 @@ impl Written for Words {
         material.check_scheme(look, scheme.name)?;
         self.check_published(look, scheme.name)?;
         let ends = time.check(look, scheme.name, TRICKLE)?;
+        self.check_rest(look, &ends, sides[0], &zeta)?;
         let written = output.check(look, &ends, &WRITTEN)?;
         let initial = initial.check(look, &cells)?;
         let run = avalanche::plan(look, title, scheme, &material, stepping, ends, written);
@@ -227,11 +228,34 @@ impl Words {
     }
 }
 
+impl Words {
+    /// A run that waits for rest on a periodic chute steeper than friction everywhere would never end.
+    fn check_rest(&self, look: &Look, ends: &Ends, along: [Side; 2], zeta: &[f64]) -> Result<(), CaseError> {
+        let waits = ends.until.is_some() && ends.time.is_none() && ends.steps.is_none();
+        let Some(mu) = self.material.friction.slipping().filter(|_| waits && along[0] == Side::Periodic)
+        else {
+            return Ok(());
+        };
+        let steep = |sign: f64| zeta.iter().all(|zeta| sign * zeta.tan() > mu);
+        if !steep(1.0) && !steep(-1.0) {
+            return Ok(());
+        }
+        let message = format!(
+            "the chute is steeper than friction everywhere (mu = {mu:.4}) and has no end: nothing ever rests"
+        );
+        Err(look.fault(
+            "time.until",
+            message,
+            "add an end, for instance end = 10.0, or take a gentler material.slope",
+        ))
+    }
+}
+
 impl OnChute {
     fn check(&self, look: &Look, axis: &Axis) -> Result<(Material, Columns), CaseError> {
-        look.positive("material.epsilon", self.epsilon)?;
-        look.positive("material.gravity", self.gravity)?;
-        look.positive("material.density", self.density)?;
+        look.usual("material.epsilon", self.epsilon)?;
+        look.usual("material.gravity", self.gravity)?;
+        look.usual("material.density", self.density)?;
         look.not_negative("material.eta", self.eta)?;
         let (gravity, density) = (self.gravity.unwrap_or(1.0), self.density.unwrap_or(1.0));
         let material = self.friction.material(look, self.earth_pressure, gravity, density)?;

@@ -166,8 +166,8 @@ impl OnTerrain {
                 "remove it, or write earth_pressure = \"isotropic\"",
             ));
         }
-        look.positive("material.gravity", self.gravity)?;
-        look.positive("material.density", Some(self.density))?;
+        look.usual("material.gravity", self.gravity)?;
+        look.usual("material.density", Some(self.density))?;
         self.friction.material(
             look,
             self.earth_pressure,

@@ -44,7 +44,7 @@ pub struct Summary {
     /// Mass that left over the edges.
     #[serde(deserialize_with = "number")]
     pub mass_out: f64,
-    /// (final - initial - in + out) / (initial + in).
+    /// (final - initial - in + out) / (initial + in + what came over open edges).
     #[serde(deserialize_with = "number")]
     pub mass_error: f64,
     /// Mass in cells thinner than a film.

@@ -1,6 +1,6 @@
 //! The loop: steps until one of a run's ends is reached, sinks looking on.
 
-use super::{Ends, Failure, Run, Sink, SinkError, StopReason, Until, trickle};
+use super::{Broken, Ends, Failure, Run, Sink, SinkError, StopReason, Until, law, trickle};
 
 /// Why a run did not reach an end.
 #[derive(Debug, thiserror::Error)]
@@ -13,15 +13,30 @@ pub enum DriveError {
         /// Time at its begin.
         time: f64,
     },
+    /// A state breaks a law of its own, at the start, in a frame or at the end.
+    #[error(transparent)]
+    Law(#[from] Broken),
     /// A sink could not take what it was shown.
     #[error(transparent)]
-    Sink(#[from] SinkError),
+    Sink(SinkError),
+}
+
+impl From<SinkError> for DriveError {
+    /// A law that a sink found broken is a broken law.
+    fn from(error: SinkError) -> Self {
+        match error.0.downcast() {
+            Ok(broken) => Self::Law(*broken),
+            Err(other) => Self::Sink(SinkError(other)),
+        }
+    }
 }
 
 /// Step `run` to the first of its `ends`, or until a sink asks for the end, which it may between two instants of one step too;
 /// then no sink hears of that step. No step is cut at an instant that a sink waits
 /// for: the sink is shown the state there on the straight line between the begin and the end of the step that passes it
 /// ([`Stepper::show`](super::Stepper::show)). So what is written changes nothing of what is computed.
+///
+/// State and maps must keep the laws of the run at the start and at the end; of a frame its sink sees to that.
 ///
 /// # Errors
 /// [`DriveError`]: the sinks have seen every step before.
@@ -34,6 +49,19 @@ pub fn drive(run: &mut dyn Run, ends: &Ends, sinks: &mut [&mut dyn Sink]) -> Res
     if let Some(Until::Rest { trickle: Some(thickness), .. }) = ends.until {
         run.track_trickle(thickness);
     }
+    law::check_state(run)?;
+    let reason = steps(run, ends, last, sinks)?;
+    law::check_end(run)?;
+    Ok(reason)
+}
+
+/// The steps to the first of the ends.
+fn steps(
+    run: &mut dyn Run,
+    ends: &Ends,
+    last: f64,
+    sinks: &mut [&mut dyn Sink],
+) -> Result<StopReason, DriveError> {
     loop {
         if wants_end(sinks) {
             return Ok(StopReason::Interrupted);
@@ -43,7 +71,7 @@ pub fn drive(run: &mut dyn Run, ends: &Ends, sinks: &mut [&mut dyn Sink]) -> Res
         }
         run.stepper_mut().expect(next_instant(sinks));
         let time = run.time();
-        let dt = run.step(last).map_err(|failure| DriveError::Step { failure, time })?;
+        let dt = run.step(last).map_err(|failure| failed(run, failure, time))?;
         if dt.is_infinite() {
             return Ok(StopReason::AtRest);
         }
@@ -53,6 +81,14 @@ pub fn drive(run: &mut dyn Run, ends: &Ends, sinks: &mut [&mut dyn Sink]) -> Res
         for sink in sinks.iter_mut() {
             sink.after_step(run)?;
         }
+    }
+}
+
+/// Why a step that began at `time` failed; of a state that is not finite the cell is named.
+fn failed(run: &mut dyn Run, failure: Failure, time: f64) -> DriveError {
+    match (failure, law::check_state(run)) {
+        (Failure::NotFinite { .. }, Err(broken)) => DriveError::Law(broken),
+        _ => DriveError::Step { failure, time },
     }
 }
 

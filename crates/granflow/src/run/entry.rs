@@ -23,10 +23,9 @@ impl Entry {
     }
 }
 
-/// (volume + left - initial - poured)/(initial + poured), and 0 of nothing.
+/// (volume + left - initial - poured)/(initial + poured + came over open edges), and 0 of nothing.
 pub fn mass_error(run: &dyn Run, totals: &Totals) -> f64 {
-    let (gone, poured, initial) =
-        (sum(run.stepper().outflow()), run.stepper().poured(), run.record().initial);
-    let whole = initial + poured;
-    if whole == 0.0 { 0.0 } else { (totals.volume + gone - initial - poured) / whole }
+    let (out, poured, initial) = (run.stepper().outflow(), run.stepper().poured(), run.record().initial);
+    let whole = initial + poured + sum(out.map(|out| (-out).max(0.0)));
+    if whole == 0.0 { 0.0 } else { (totals.volume + sum(out) - initial - poured) / whole }
 }

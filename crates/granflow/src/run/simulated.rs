@@ -1,6 +1,6 @@
 //! A simulation of the engine as a [`Run`]: what a model adds to its scheme is its [`Physics`].
 
-use super::{Failure, FieldView, Maps, Record, Run, Saved, Totals, trickle};
+use super::{Failure, FieldView, Laws, Maps, Record, Run, Saved, Totals, trickle};
 use crate::model::Plane;
 use granflow_engine::Stepper;
 use granflow_engine::grid::Layout;
@@ -51,6 +51,10 @@ pub trait Physics<const D: usize>: Send + Sync + 'static {
     fn threshold(&self) -> f64 {
         0.0
     }
+    /// What its states promise.
+    fn laws(&self) -> Laws {
+        Laws::default()
+    }
     /// Set the forcing (sources) before a step that ends at `until` at the latest; returns the time at which it changes again.
     fn prepare(&mut self, _simulation: &mut Simulation<D, Self::Scheme>, _until: f64) -> f64 {
         f64::INFINITY
@@ -76,6 +80,14 @@ pub trait Physics<const D: usize>: Send + Sync + 'static {
     /// More than a trickle of this thickness moves.
     fn flows(&self, _simulation: &Simulation<D, Self::Scheme>, _trickle: f64) -> bool {
         true
+    }
+    /// Volume that moves in a mere trickle, of this thickness or, without one, of the usual; none of a model without trickles.
+    fn trickle_volume(
+        &self,
+        _simulation: &Simulation<D, Self::Scheme>,
+        _trickle: Option<f64>,
+    ) -> Option<f64> {
+        None
     }
     /// See [`Run::is_steady`]; `drift` is [`Run::drift`].
     fn is_steady(&self, _simulation: &Simulation<D, Self::Scheme>, _drift: &[f64], _rate: f64) -> bool {
@@ -147,6 +159,16 @@ impl<const D: usize, P: Physics<D>> Simulated<D, P> {
         }
     }
 
+    /// A fixed step beyond the Courant number of the scheme: it keeps none of its laws there.
+    fn too_long(&self) -> Option<Failure> {
+        let simulation = &self.simulation;
+        let (dt, max) = (simulation.wanted_step(), simulation.scheme().max_courant());
+        let courant = dt * simulation.rate();
+        let (step, time) = (simulation.step(), simulation.time());
+        let beyond = !simulation.is_adaptive() && courant.is_finite() && courant > max * (1.0 + 1e-9);
+        beyond.then_some(Failure::TooLong { step, time, dt, courant, max })
+    }
+
     /// The kinetic energy of the state as it stands, into the record.
     fn note_energy(&mut self) {
         self.record.energy = self.simulation.totals().energy;
@@ -192,6 +214,9 @@ impl<const D: usize, P: Physics<D>> Run for Simulated<D, P> {
     fn has_speed(&self) -> bool {
         self.physics.has_speed()
     }
+    fn laws(&self) -> Laws {
+        self.physics.laws()
+    }
     fn track_energy(&mut self) {
         if !std::mem::replace(&mut self.tracks_energy, true) {
             self.note_energy();
@@ -214,6 +239,9 @@ impl<const D: usize, P: Physics<D>> Run for Simulated<D, P> {
         let until = if self.simulation.is_adaptive() { until.min(change) } else { until };
         if !self.simulation.wanted_step().is_finite() && !until.is_finite() {
             return Ok(f64::INFINITY);
+        }
+        if let Some(failure) = self.too_long() {
+            return Err(failure);
         }
         let begun = Instant::now();
         let advanced = self.simulation.advance(until);
@@ -285,7 +313,10 @@ impl<const D: usize, P: Physics<D>> Run for Simulated<D, P> {
         self.plane.clone().with_bed(|| self.physics.elevation(&self.simulation))
     }
     fn numbers(&self) -> Numbers {
-        self.physics.numbers(&self.simulation, self.drift(), &self.record)
+        let mut numbers = self.physics.numbers(&self.simulation, self.drift(), &self.record);
+        let volume = self.physics.trickle_volume(&self.simulation, self.trickle);
+        numbers.extend(volume.map(|volume| ("trickle_volume".to_owned(), volume)));
+        numbers
     }
 
     fn bytes_per_cell(&self, instants: bool) -> usize {

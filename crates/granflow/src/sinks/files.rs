@@ -13,7 +13,7 @@ use crate::output::frames::Frames;
 use crate::output::ledger::{Entry, Ledger};
 use crate::output::summary::{StopReason, Summary};
 use crate::results::{FilesError, Finished};
-use crate::run::Run;
+use crate::run::{Run, check_state};
 use ending::Ending;
 use granflow_case::RunPlan;
 use std::path::{Path, PathBuf};
@@ -241,9 +241,9 @@ impl Files {
         Ok(())
     }
 
-    fn step_taken(&mut self, run: &mut dyn Run) -> Result<(), output::Error> {
+    fn step_taken(&mut self, run: &mut dyn Run, due: Due) -> Result<(), output::Error> {
         self.writer.check()?;
-        match self.schedule.due(run) {
+        match due {
             Due::Frame => self.frame_due(run)?,
             Due::Line => self.line(run)?,
             Due::Nothing => {}
@@ -312,10 +312,15 @@ impl Sink for Files {
         self.schedule.next()[0]
     }
     fn at_instant(&mut self, run: &mut dyn Run) -> Result<(), SinkError> {
+        check_state(run).map_err(SinkError::of)?;
         self.frame_due(run).map_err(SinkError::of)
     }
     fn after_step(&mut self, run: &mut dyn Run) -> Result<(), SinkError> {
-        self.step_taken(run).map_err(SinkError::of)
+        let due = self.schedule.due(run);
+        if due == Due::Frame {
+            check_state(run).map_err(SinkError::of)?;
+        }
+        self.step_taken(run, due).map_err(SinkError::of)
     }
 }
 

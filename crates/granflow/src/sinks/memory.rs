@@ -7,7 +7,7 @@ use crate::model::Plane;
 use crate::output::{Error, netcdf::Values};
 #[cfg(feature = "files")]
 use crate::results::{About, dataset};
-use crate::run::{Entry, Maps, Run};
+use crate::run::{Entry, Maps, Run, check_state};
 use granflow_case::Frames;
 #[cfg(feature = "files")]
 use granflow_case::Precision;
@@ -102,6 +102,7 @@ impl Sink for Memory {
         self.schedule.next()[0]
     }
     fn at_instant(&mut self, run: &mut dyn Run) -> Result<(), SinkError> {
+        check_state(run).map_err(SinkError::of)?;
         self.frame(run);
         self.schedule.plan(run);
         Ok(())

@@ -157,6 +157,16 @@ impl Friction {
         Ok(Material { friction: self.name(), mu, law, in_space, pressure_coefficient, gravity, density })
     }
 
+    /// mu of a law that holds no layer, however thin, on a bed steeper than mu; of a law without such a bound none.
+    pub fn slipping(&self) -> Option<f64> {
+        match self {
+            Self::Coulomb(Coulomb { angle, mu }) | Self::Voellmy(Voellmy { angle, mu, .. }) => {
+                angle.map(|angle| angle.radians().tan()).or(mu.as_ref().map(Parameter::usual))
+            }
+            _ => None,
+        }
+    }
+
     /// Does the friction grow with the load, by the first number?
     fn has_mu(&self) -> bool {
         !matches!(self, Self::Bingham(_) | Self::HerschelBulkley(_) | Self::Quadratic(_))

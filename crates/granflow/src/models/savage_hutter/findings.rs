@@ -7,6 +7,9 @@ use crate::output::summary::{StopReason, Summary};
 /// A larger share of the volume in films, or gone from the grid, is worth a warning.
 const SHARE: f64 = 0.005;
 
+/// A larger mass error is none of rounding.
+const ROUNDING: f64 = 1e-12;
+
 /// What to know before the numbers of a run are trusted.
 pub(super) fn warnings(model: &Model, summary: &Summary) -> Vec<String> {
     let mut warnings: Vec<String> = unfinished(summary).into_iter().collect();
@@ -28,6 +31,13 @@ pub(super) fn warnings(model: &Model, summary: &Summary) -> Vec<String> {
             summary.extra("film").unwrap_or(f64::NAN)
         ));
     }
+    if summary.mass_error.abs() > ROUNDING {
+        warnings.push(format!(
+            "the mass changed by {:.3} % of its own accord: {} does not conserve it; balanced and energy_stable do",
+            100.0 * summary.mass_error,
+            summary.scheme
+        ));
+    }
     warnings
 }
 
@@ -38,6 +48,9 @@ fn unfinished(summary: &Summary) -> Option<String> {
     let share = 100.0 * summary.share(moving);
     match summary.stop_reason {
         StopReason::AtRest | StopReason::Steady => None,
+        StopReason::Failed => {
+            Some("the run failed: what it shows after the last frame is worth nothing".to_owned())
+        }
         StopReason::Trickle => Some(format!(
             "a trickle still moves, thin or slow, through {cells} cells that hold {share:.2} % of the volume; nothing else has moved since \
              {:.6}. time.trickle = 0 waits until it rests",

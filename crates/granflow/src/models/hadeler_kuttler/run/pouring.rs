@@ -3,7 +3,7 @@
 use super::super::TableDomain;
 use super::sand::Sand;
 use crate::model::Domain;
-use crate::run::{CellOf, Field, Maps, Numbers, Physics, Record, Value};
+use crate::run::{CellOf, Field, Laws, Maps, Numbers, Physics, Record, Value};
 use granflow_engine::simulation::Simulation;
 use granflow_model::hadeler_kuttler::scheme::HadelerKuttler;
 use std::sync::Arc;
@@ -86,6 +86,9 @@ impl<const D: usize> Physics<D> for Pouring<D> {
         !sources.is_moving(time) && sources.changes().iter().all(|change| *change <= time)
     }
 
+    fn laws(&self) -> Laws {
+        Laws { layers: 2, ..Laws::default() }
+    }
     fn blanks(&self) -> bool {
         true
     }

@@ -1,0 +1,113 @@
+//! Text and files of others: shown and not sent, named and not quoted, refused before they fill the memory.
+
+mod support;
+
+use std::path::Path;
+use support::{granflow, said, told};
+
+const CASE: &str = r#"title = "test"
+[grid]
+x = { from = -6.0, to = 6.0, cells = 24 }
+[material]
+friction.coulomb = { mu = 0.3 }
+[initial]
+thickness = 1.0
+[time]
+steps = 3
+"#;
+
+fn put(folder: &Path, name: &str, text: &str) {
+    std::fs::write(folder.join(name), text).expect("a file");
+}
+
+/// Nothing in what was said steers a terminal.
+fn is_plain(text: &str) -> bool {
+    !text.contains(|sign: char| (sign.is_control() && sign != '\n') || sign == '\u{202e}')
+}
+
+#[test]
+fn no_text_of_others_steers_the_terminal() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let escapes = "\\u001b[2J\\u0007\\u202e";
+    for (what, by) in [
+        ("title = \"test\"", format!("title = \"red {escapes}\"")),
+        ("mu = 0.3", format!("\"m{escapes}\" = 0.3")),
+        ("thickness = 1.0", format!("thickness.formula = \"x + {escapes}\"")),
+        ("thickness = 1.0", format!("thickness.file = \"h{escapes}.csv\"")),
+        ("mu = 0.3", format!("angle = \"18 {escapes}\"")),
+        ("steps = 3", "steps = 3 # \u{1b}[31m".to_owned()),
+        ("steps = 3", format!("steps = 3\nuntil = \"{escapes}\"")),
+    ] {
+        put(folder.path(), "case.toml", &CASE.replace(what, &by));
+        for command in ["check", "run"] {
+            let output = granflow(
+                folder.path(),
+                &[command, "case.toml", "--out", "out"][..if command == "run" { 4 } else { 2 }],
+            );
+            let text = said(&output) + &told(&output);
+            assert!(is_plain(&text), "{by}: {text:?}");
+        }
+    }
+    let name = "odd\u{1b}[31m.toml";
+    put(folder.path(), name, CASE);
+    for arguments in
+        [&["check", name] as &[&str], &["run", name], &["run", name, "--resume"], &["plot", name]]
+    {
+        let output = granflow(folder.path(), arguments);
+        let text = said(&output) + &told(&output);
+        assert!(
+            is_plain(&text) && (text.contains("odd\\u{1b}[31m") || text.is_empty()),
+            "{arguments:?}: {text:?}"
+        );
+    }
+}
+
+#[test]
+fn of_a_file_that_is_no_case_only_the_name_is_shown() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let secret = "hunter2";
+    for (name, text) in [
+        ("passwd", format!("root:x:0:0:{secret}\n")),
+        ("credentials.toml", format!("title = \"keys\"\n[registry]\ntoken = \"{secret}\"\n")),
+        ("broken.toml", format!("{secret} = = 3\n")),
+        ("zeros", format!("\0\0{secret}\0")),
+        ("empty.toml", String::new()),
+    ] {
+        put(folder.path(), name, &text);
+        let output = granflow(folder.path(), &["run", name]);
+        let message = told(&output);
+        assert_eq!(output.status.code(), Some(2), "{message}");
+        assert!(message.contains(name) && message.contains("this is no case file"), "{message}");
+        assert!(message.contains("granflow new --list") && !message.contains(secret), "{message}");
+    }
+    // a case with a mistake is shown
+    put(folder.path(), "case.toml", &CASE.replace("steps = 3", "steps = = 3"));
+    assert!(told(&granflow(folder.path(), &["run", "case.toml"])).contains("steps = = 3"));
+}
+
+#[test]
+fn deep_keys_and_endless_lines_are_refused_in_few_words() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let deep = 20_000;
+    let long = "x".repeat(1 << 20);
+    for text in [
+        format!("{CASE}\n{} = 1\n", vec!["a"; deep].join(".")),
+        format!("{CASE}\n[{}]\nb = 1\n", vec!["a"; deep].join(".")),
+        format!("{CASE}\na = {}{}\n", "[".repeat(deep), "]".repeat(deep)),
+        format!("{CASE}\na = {}1{}\n", "{a=".repeat(deep), "}".repeat(deep)),
+        format!("{CASE}\nuntil = \"{long}\"\n"),
+        format!("{CASE}\n\"{long}\" = 1\n"),
+        CASE.replace("mu = 0.3", &format!("mu = {}", "3".repeat(1 << 20))),
+    ] {
+        put(folder.path(), "case.toml", &text);
+        let output = granflow(folder.path(), &["check", "case.toml"]);
+        let message = told(&output);
+        assert_eq!(output.status.code(), Some(2), "{}", &message[..message.len().min(2000)]);
+        assert!(message.len() < 4000, "{} bytes", message.len());
+    }
+    let key = vec!["a"; deep].join(".");
+    assert_eq!(
+        granflow(folder.path(), &["check", "case.toml", "--set", &format!("{key}=1")]).status.code(),
+        Some(2)
+    );
+}
