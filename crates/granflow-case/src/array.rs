@@ -25,7 +25,8 @@ pub(crate) fn read(files: &dyn FileAccess, path: &Path, [nx, ny]: [usize; 2]) ->
     Err(format!("{name} has shape ({found}), the grid needs {wanted}"))
 }
 
-fn read_text(bytes: &[u8]) -> Result<(Vec<usize>, Vec<f64>), String> {
+/// The numbers of a text table, with its rows and columns; `#` begins a comment.
+pub(crate) fn read_text(bytes: &[u8]) -> Result<(Vec<usize>, Vec<f64>), String> {
     let text = std::str::from_utf8(bytes).map_err(|_| "it is not text".to_owned())?;
     let mut values = Vec::new();
     let (mut rows, mut columns) = (0, None);

@@ -182,11 +182,11 @@ impl Raster {
         self.values[row * self.columns + column]
     }
 
-    /// The value of the cell that holds a place, NaN for nodata and beyond the edges.
-    pub fn holding(&self, [x, y]: [f64; 2]) -> f64 {
+    /// The index of the cell that holds a place, if there is one.
+    pub fn cell_at(&self, [x, y]: [f64; 2]) -> Option<usize> {
         let [column, row] = [(x - self.west) / self.cell, (y - self.south) / self.cell].map(f64::floor);
         let inside = column >= 0.0 && row >= 0.0 && column < self.columns as f64 && row < self.rows as f64;
-        if inside { self.at(column as usize, row as usize) } else { f64::NAN }
+        inside.then(|| row as usize * self.columns + column as usize)
     }
 
     /// Column and row of the cell at an index of [`Raster::values`].

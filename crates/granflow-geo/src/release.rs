@@ -3,6 +3,7 @@
 mod corners;
 mod coverage;
 mod error;
+mod inlets;
 mod outlines;
 mod sparse;
 mod table;
@@ -10,6 +11,7 @@ mod vector;
 mod zones;
 
 pub use error::ReleaseError;
+pub use inlets::along;
 pub use outlines::Outlines;
 pub use sparse::Sparse;
 pub use vector::Layer;

@@ -14,12 +14,14 @@ use crate::plan::RunPlan;
 use crate::precision::Precision;
 use crate::source::Missing;
 
+mod inflow;
 mod release;
 mod words;
 
 use words::Elevation;
 
-pub use release::{Attribute, Cap, Extent, Measured, Release, Thickness};
+pub use inflow::{Hydrograph, Inflow, Over};
+pub use release::{Attribute, Cap, Extent, Measured, Release, Starts, Thickness};
 
 /// The film of a case that says none \[m\]: a layer of a tenth of a millimetre, thinner than a grain, does not flow.
 pub const FILM: f64 = 1e-4;
@@ -41,8 +43,10 @@ pub struct Plan {
     pub cell: Option<f64>,
     /// Span of the window that gradient and curvature of the bed come from, `None` for no curvature in the friction.
     pub curvature: Option<f64>,
-    /// What is released at the start.
+    /// What is released.
     pub releases: Vec<Release>,
+    /// What enters in the course of the run.
+    pub inflows: Vec<Inflow>,
     /// What flows, and what holds it back.
     pub material: Material,
     /// The scheme.
@@ -77,9 +81,12 @@ pub(crate) struct Words {
     terrain: Elevation,
     /// The material.
     material: OnTerrain,
-    /// What is released at the start.
+    /// What is released.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     release: Vec<release::Words>,
+    /// What enters in the course of the run.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    inflow: Vec<inflow::Words>,
     /// The method.
     #[serde(default)]
     scheme: avalanche::Scheme,
@@ -119,12 +126,13 @@ impl Written for Words {
     };
 
     fn check(&self, look: &Look) -> Result<(RunPlan, Kind), CaseError> {
-        let Self { title, terrain, material, release, time, output, .. } = self;
+        let Self { title, terrain, material, release, inflow, time, output, .. } = self;
         let scheme = &self.scheme.or(SchemeName::EnergyStable2);
-        if release.is_empty() {
+        let first = release.iter().any(|one| one.when.is_none());
+        if !first && inflow.is_empty() {
             return Err(look.fault(
                 "release",
-                "a case with [terrain] needs a [[release]]",
+                "a case with [terrain] needs a [[release]] that starts by itself, or an [[inflow]]",
                 "add [[release]] with polygons, raster or cap",
             ));
         }
@@ -139,6 +147,10 @@ impl Written for Words {
         let releases = releases
             .map(|(index, one)| one.check(look, &format!("release[{index}]")))
             .collect::<Result<_, _>>()?;
+        let inflows = inflow.iter().enumerate();
+        let inflows = inflows
+            .map(|(index, one)| one.check(look, &format!("inflow[{index}]")))
+            .collect::<Result<_, _>>()?;
         look.file("terrain.dem", &terrain.dem)?;
         for (index, one) in release.iter().enumerate() {
             one.check_files(look, &format!("release[{index}]"))?;
@@ -150,6 +162,7 @@ impl Written for Words {
             cell: terrain.cell,
             curvature,
             releases,
+            inflows,
             material,
             scheme: scheme.method(named, FILM),
         });
@@ -204,9 +217,9 @@ const WRITTEN: Defaults = Defaults {
 };
 
 /// Keys that not every model has.
-const KEYS: [&str; 7] = {
+const KEYS: [&str; 8] = {
     let [material, film, rest_speed, trickle, stop] = avalanche::KEYS;
-    [material, film, rest_speed, trickle, stop, "terrain", "release"]
+    [material, film, rest_speed, trickle, stop, "terrain", "release", "inflow"]
 };
 
 /// A key that only a scaled case has.

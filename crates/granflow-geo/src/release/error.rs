@@ -166,6 +166,12 @@ pub enum ReleaseError {
         /// Why.
         problem: &'static str,
     },
+    /// A line along which nothing can enter.
+    #[error("the line of an inflow: {problem}; give points within the terrain's data")]
+    Line {
+        /// What is wrong.
+        problem: String,
+    },
     /// A cap without height, without radius, or over no cell with a value.
     #[error("the cap releases nothing: {problem}")]
     Cap {

@@ -9,13 +9,24 @@ use crate::choice::{Plain, plain_or_table};
 use crate::fault::CaseError;
 use crate::look::Look;
 
-/// Mass that is released at the start.
+/// Mass that is released.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Release {
     /// Where it is, and how thick.
     pub extent: Extent,
     /// How the thickness is measured.
     pub measured: Measured,
+    /// When it starts.
+    pub starts: Starts,
+}
+
+/// When a release starts.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Starts {
+    /// At a time \[s\].
+    At(f64),
+    /// When flowing mass reaches it.
+    Hit,
 }
 
 /// Where a release is and how thick.
@@ -34,7 +45,7 @@ pub enum Extent {
     Cap(Cap),
 }
 
-/// Mass that is released at the start: exactly one of `polygons`, `raster`, `cap`.
+/// Mass that is released: exactly one of `polygons`, `raster`, `cap`.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 #[schemars(rename = "Release")]
@@ -54,6 +65,20 @@ pub(super) struct Words {
     /// How the thickness is measured.
     #[serde(default)]
     pub measured: Measured,
+    /// Time in seconds at which it starts (default 0).
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub at: Option<f64>,
+    /// What lets it start instead of a time: "hit", flowing mass that reaches it.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub when: Option<When>,
+}
+
+/// What lets a secondary release start.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum When {
+    /// Flowing mass that reaches one of its cells.
+    Hit,
 }
 
 /// A parabolic cap, height (1 - r^2/radius^2), r the horizontal distance.
@@ -113,7 +138,7 @@ impl Words {
     /// Checks the numbers; the files may be missing yet.
     pub fn check(&self, look: &Look, key: &str) -> Result<Release, CaseError> {
         let thickness_key = format!("{key}.thickness");
-        let measured = self.measured;
+        let (measured, starts) = (self.measured, self.starts(look, key)?);
         let extent = match (&self.polygons, &self.raster, &self.cap) {
             (Some(path), None, None) => {
                 let Some(thickness) = self.thickness.clone() else {
@@ -129,6 +154,7 @@ impl Words {
                 return Ok(Release {
                     extent: Extent::Polygons { path: look.locate(path), thickness },
                     measured,
+                    starts,
                 });
             }
             (None, Some(path), None) => Extent::Raster(look.locate(path)),
@@ -155,7 +181,23 @@ impl Words {
                 look.number(&format!("{key}.cap.centre[{index}]"), *value, |_| true, "a finite number")?;
             }
         }
-        Ok(Release { extent, measured })
+        Ok(Release { extent, measured, starts })
+    }
+
+    fn starts(&self, look: &Look, key: &str) -> Result<Starts, CaseError> {
+        match (self.at, self.when) {
+            (None, None) => Ok(Starts::At(0.0)),
+            (Some(at), None) => {
+                look.not_negative(&format!("{key}.at"), Some(at))?;
+                Ok(Starts::At(at))
+            }
+            (None, Some(When::Hit)) => Ok(Starts::Hit),
+            (Some(_), Some(_)) => Err(look.fault(
+                &format!("{key}.when"),
+                "both `at` and `when` are given",
+                "keep one: a time, or when = \"hit\"",
+            )),
+        }
     }
 
     /// The files must exist.

@@ -8,5 +8,6 @@ pub mod flowing;
 mod parameters;
 #[cfg(all(feature = "geo", feature = "threads"))]
 pub(crate) mod speed;
+mod supply;
 #[cfg(feature = "geo")]
 pub(crate) mod terrain;

@@ -1,5 +1,6 @@
 //! The Savage-Hutter equations as a run shows them: thickness and velocity, peaks and times.
 
+use super::supply::Supply;
 use crate::run::{CellOf, Field, Laws, Maps, Numbers, Physics, Record, Value};
 use granflow_case::avalanche::SchemeName;
 use granflow_case::{chute, terrain};
@@ -20,6 +21,8 @@ pub struct Flowing<S> {
     threshold: f64,
     /// The bed has an elevation: surface and speed are shown too.
     on_terrain: bool,
+    /// What comes in the course of the run.
+    supply: Supply,
     scheme: PhantomData<fn() -> S>,
 }
 
@@ -27,13 +30,18 @@ impl<S> Flowing<S> {
     /// Under this name; a thinner layer than `film` is held. The threshold is the one of a case that says none.
     pub fn new(name: &'static str, film: f64, on_terrain: bool) -> Self {
         let threshold = if on_terrain { terrain::THRESHOLD } else { chute::THRESHOLD };
-        Flowing { name, film, threshold, on_terrain, scheme: PhantomData }
+        Flowing { name, film, threshold, on_terrain, supply: Supply::default(), scheme: PhantomData }
     }
     /// The same, where a layer counts in peaks, times and deposit if it is thicker than `threshold` (units of
     /// the thickness, normal to the bed).
     #[must_use]
     pub fn with_threshold(self, threshold: f64) -> Self {
         Flowing { threshold, ..self }
+    }
+    /// The same with what comes in the course of the run.
+    #[cfg(feature = "geo")]
+    pub(crate) fn with_supply(self, supply: Supply) -> Self {
+        Flowing { supply, ..self }
     }
 }
 
@@ -75,6 +83,18 @@ where
     }
     fn threshold(&self) -> f64 {
         self.threshold
+    }
+    fn prepare(&mut self, simulation: &mut Simulation<D, S>, _until: f64) -> f64 {
+        if self.supply.is_empty() { f64::INFINITY } else { self.supply.bring(simulation) }
+    }
+    fn save(&self) -> Vec<f64> {
+        self.supply.save()
+    }
+    fn restore(&mut self, _simulation: &mut Simulation<D, S>, saved: &[f64]) -> bool {
+        self.supply.restore(saved)
+    }
+    fn is_settled(&self, time: f64) -> bool {
+        self.supply.is_settled(time)
     }
     fn laws(&self) -> Laws {
         // It chooses a flux for each cell, so that the two sides of a face may differ (errata, 5).
@@ -125,6 +145,10 @@ where
             ("moving_cells_final".to_owned(), totals.moving as f64),
             ("moving_volume_final".to_owned(), totals.moving_volume),
         ];
+        let waiting = self.supply.unreleased() * simulation.grid().measure();
+        if waiting > 0.0 {
+            numbers.push(("unreleased_volume".to_owned(), waiting));
+        }
         if record.flowed > 0.0 {
             numbers.push(("flowed_until".to_owned(), record.flowed));
         }

@@ -75,7 +75,10 @@ fn values(
             let Reading { raster, notes } = Reading::of_numbers(path, bed.crs.as_ref().or(crs))?;
             remarks.extend(notes);
             raster.same_system(path, bed)?;
-            let at = |k: usize| raster.holding([bed.x(k % bed.columns), bed.y(k / bed.columns)]);
+            let at = |k: usize| {
+                let cell = raster.cell_at([bed.x(k % bed.columns), bed.y(k / bed.columns)]);
+                cell.map_or(f64::NAN, |cell| raster.values[cell])
+            };
             ((0..bed.values.len()).map(at).collect(), *elsewhere)
         }
         Place::Polygons(path, attribute, elsewhere) => {

@@ -3,12 +3,13 @@
 use super::super::TerrainDomain;
 use super::flowing::Flowing;
 use super::parameters::InCells;
+use super::supply::{Inflow, Inlet, Late, Supply};
 use crate::StartError;
 use crate::memory::fits;
 use crate::model::Plane;
 use crate::run::{Run, Simulated, step_size};
 use granflow_case::RunPlan;
-use granflow_case::terrain::{Extent, Measured, Plan, Release, TerrainScheme, Thickness};
+use granflow_case::terrain::{Extent, Measured, Over, Plan, Release, Starts, TerrainScheme, Thickness};
 use granflow_engine::grid::Grid;
 use granflow_engine::kernels::Kernel;
 use granflow_engine::simulation::Simulation;
@@ -42,6 +43,8 @@ pub(super) struct Loaded {
     pub survey: Survey,
     /// What of the friction differs from cell to cell.
     pub parameters: InCells,
+    /// What comes in the course of the run.
+    pub supply: Supply,
 }
 
 /// The run on a mountain that was read. The derivatives of the bed are fitted cell by cell as the simulation asks for its
@@ -49,7 +52,7 @@ pub(super) struct Loaded {
 pub(super) fn simulate(
     run: &RunPlan,
     plan: &Plan,
-    Loaded { terrain, release, remarks, parameters, .. }: Loaded,
+    Loaded { terrain, release, remarks, parameters, supply, .. }: Loaded,
 ) -> Result<Box<dyn Run>, StartError> {
     let (bed, gravity) = (&terrain.bed, plan.material.gravity);
     let columns = bed.columns;
@@ -70,10 +73,11 @@ pub(super) fn simulate(
     };
     let plane = Plane::of(&grid, Arc::new(domain));
     let film = plan.scheme.film;
-    let ceiling = gravity * ceiling(&terrain, &release);
+    // What comes later brings a head of its own.
+    let ceiling = if supply.is_empty() { gravity * ceiling(&terrain, &release) } else { f64::MAX };
     let ground = move |cell| ground_at(&terrain, gravity, cell);
     let state = move |[i, j]: [usize; 2]| Flow::still(release.get(j * columns + i));
-    let begin = Begin { run, film, grid, plane };
+    let begin = Begin { run, film, grid, plane, supply };
     let Some(law) = plan.material.law_in_loops() else {
         let law = plan.material.law;
         let scheme = match plan.scheme.name {
@@ -104,6 +108,7 @@ struct Begin<'a> {
     film: f64,
     grid: Grid<2>,
     plane: Plane,
+    supply: Supply,
 }
 
 impl Begin<'_> {
@@ -118,11 +123,12 @@ impl Begin<'_> {
     where
         S: Kernel<2, State = Flow<2, f64>, Ground = ground::Terrain<2, f64>> + 'static,
     {
-        let Begin { run, film, grid, plane } = self;
+        let Begin { run, film, grid, plane, supply } = self;
         fits(grid.cells.iter().product(), Simulation::<2, S>::bytes_per_cell(false))?;
         let mut simulation = Simulation::new(scheme, grid, step_size(run), ground, state)?;
         simulation.apply(forcing);
-        let physics = Flowing::new(run.scheme, film, true).with_threshold(run.output.threshold);
+        let physics =
+            Flowing::new(run.scheme, film, true).with_threshold(run.output.threshold).with_supply(supply);
         Ok(Box::new(Simulated::new(simulation, physics, plane)))
     }
 }
@@ -163,10 +169,16 @@ pub(super) fn load(run: &RunPlan, plan: &Plan) -> Result<Loaded, StartError> {
     remarks.extend(survey.warnings(&plan.dem.display().to_string()));
     let parameters = InCells::read(run, &plan.material, (&bed, crs.as_ref()), &mut remarks)?;
     let terrain = curved(run, plan, bed)?;
-    let mut loaded =
-        Loaded { terrain, release: Sparse::default(), parts: Vec::new(), remarks, survey, parameters };
+    let (release, parts) = (Sparse::default(), Vec::new());
+    let supply = Supply { threshold: run.output.threshold, ..Supply::default() };
+    let mut loaded = Loaded { terrain, release, parts, remarks, survey, parameters, supply };
     for one in &plan.releases {
         add(&mut loaded, one, crs.as_ref())?;
+    }
+    for (number, one) in plan.inflows.iter().enumerate() {
+        let key = format!("inflow[{number}]");
+        let inflow = inflow(run, one, &key, &mut loaded)?;
+        loaded.supply.inflows.push(inflow);
     }
     trim();
     Ok(loaded)
@@ -255,6 +267,52 @@ fn add(loaded: &mut Loaded, one: &Release, crs: Option<&Crs>) -> Result<(), Star
     let volume = release::per_plan_area(cells, &loaded.terrain, measured);
     let total = volume.iter().map(|(_, height)| height).sum::<f64>() * bed.cell * bed.cell;
     loaded.parts.push((name, system, total));
-    loaded.release = std::mem::take(&mut loaded.release).plus(volume);
+    if one.starts == Starts::At(0.0) {
+        loaded.release = std::mem::take(&mut loaded.release).plus(volume);
+    } else {
+        let cells = volume.iter().filter(|(_, volume)| *volume > 0.0);
+        let cells = cells.map(|(cell, volume)| (bed.place(cell), volume)).collect();
+        loaded.supply.late.push(Late { starts: one.starts, cells, came: false });
+    }
     Ok(())
 }
+
+/// The cells of an inflow, each with its share and the direction in which the mass moves there.
+fn inflow(
+    run: &RunPlan,
+    one: &granflow_case::terrain::Inflow,
+    key: &str,
+    loaded: &mut Loaded,
+) -> Result<Inflow, StartError> {
+    let bed = &loaded.terrain.bed;
+    let cells = match &one.over {
+        Over::Line(points) => release::along(points, bed)?,
+        Over::Polygons(path) => {
+            let layer = release::Layer::read(path)?;
+            loaded.remarks.extend(layer.notes(bed));
+            layer.cells(bed)?
+        }
+    };
+    let moves = one.hydrograph.speed.iter().any(|speed| *speed > 0.0);
+    let inlet = |(cell, share): (usize, f64)| {
+        let cell = bed.place(cell);
+        let [down_x, down_y] = loaded.terrain.fit(cell).gradient.map(|slope| -slope);
+        let [x, y] = one.direction.unwrap_or([down_x, down_y]);
+        let length = x.hypot(y);
+        if moves && length < LEVEL {
+            let place = format!("({}, {})", bed.x(cell[0]), bed.y(cell[1]));
+            let message =
+                format!("the bed is level at {place}: there is no way down for a mass with a speed");
+            return Err(run.fault(key, message, "say where it goes, as in direction = [1, 0]").into());
+        }
+        let direction = if length < LEVEL { [0.0; 2] } else { [x / length, y / length] };
+        Ok(Inlet { cell, share, direction })
+    };
+    let inlets = cells.into_iter().map(inlet).collect::<Result<_, StartError>>()?;
+    let volume = one.hydrograph.volume(f64::INFINITY);
+    loaded.parts.push(("inflow".to_owned(), None, volume));
+    Ok(Inflow { inlets, hydrograph: one.hydrograph.clone(), entered: 0.0 })
+}
+
+/// A gentler slope has no direction.
+const LEVEL: f64 = 1e-9;

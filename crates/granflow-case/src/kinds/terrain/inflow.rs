@@ -1,0 +1,215 @@
+//! `[[inflow]]`: mass that enters in the course of a run.
+
+use std::path::{Path, PathBuf};
+
+use schemars::JsonSchema;
+use serde::{Deserialize, Deserializer, Serialize};
+
+use crate::array;
+use crate::choice::{Plain, plain_or_table};
+use crate::fault::CaseError;
+use crate::look::Look;
+
+/// Mass that enters: where, and how much by the time.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Inflow {
+    /// Where it enters.
+    pub over: Over,
+    /// Discharge and speed by the time.
+    pub hydrograph: Hydrograph,
+    /// The direction in which it moves, if it is not down the slope.
+    pub direction: Option<[f64; 2]>,
+}
+
+/// Where mass enters.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Over {
+    /// Along a line of points [x, y] in the raster's coordinates.
+    Line(Vec<[f64; 2]>),
+    /// Over the polygons of a file.
+    Polygons(PathBuf),
+}
+
+/// Discharge by the time, straight between instants, none before the first and after the last.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Hydrograph {
+    /// Instants in s, growing.
+    pub time: Vec<f64>,
+    /// Discharge at them in m^3/s.
+    pub discharge: Vec<f64>,
+    /// Speed along the bed at them in m/s (default 0: it enters at rest).
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub speed: Vec<f64>,
+}
+
+/// Mass that enters in the course of a run: over exactly one of `line`, `polygons`.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+#[schemars(rename = "Inflow")]
+pub(super) struct Words {
+    /// Points [x, y] of a line in the raster's coordinates.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    line: Option<Vec<[f64; 2]>>,
+    /// Polygons: a shapefile or GeoJSON.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    polygons: Option<PathBuf>,
+    /// A file with a line "time, discharge" or "time, discharge, speed" for each instant, or the same as a table.
+    hydrograph: Given,
+    /// Direction [x, y] in which the mass moves where it has a speed (default: down the slope).
+    #[serde(skip_serializing_if = "Option::is_none")]
+    direction: Option<[f64; 2]>,
+}
+
+/// A hydrograph: a file, or a table.
+#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
+#[serde(untagged)]
+enum Given {
+    /// A file.
+    File(PathBuf),
+    /// As a table.
+    Table(Hydrograph),
+}
+
+impl<'de> Deserialize<'de> for Given {
+    fn deserialize<D: Deserializer<'de>>(from: D) -> Result<Self, D::Error> {
+        let expected = "a file as in \"q.csv\", or { time = [0, 60], discharge = [5, 0] }";
+        let read = |value: Plain| match value {
+            Plain::Text(text) => Ok(Self::File(text.into())),
+            Plain::Number(number) => Err(format!("found the number {number}, expected {expected}")),
+        };
+        plain_or_table(from, expected, read, Self::Table)
+    }
+}
+
+impl Words {
+    /// Checks the numbers, and reads the hydrograph.
+    pub fn check(&self, look: &Look, key: &str) -> Result<Inflow, CaseError> {
+        let over = match (&self.line, &self.polygons) {
+            (Some(points), None) => {
+                let finite = points.iter().flatten().all(|value| value.is_finite());
+                if points.len() < 2 || !finite {
+                    let message = "a line needs at least two points [x, y] of finite numbers";
+                    return Err(look.fault(
+                        &format!("{key}.line"),
+                        message,
+                        "as in line = [[10, 20], [10, 40]]",
+                    ));
+                }
+                Over::Line(points.clone())
+            }
+            (None, Some(path)) => {
+                look.file(&format!("{key}.polygons"), path)?;
+                Over::Polygons(look.locate(path))
+            }
+            _ => {
+                return Err(look.fault(
+                    key,
+                    "an inflow has exactly one of line, polygons",
+                    "split it into several [[inflow]] tables, or remove what is too much",
+                ));
+            }
+        };
+        let at = format!("{key}.hydrograph");
+        let hydrograph = match &self.hydrograph {
+            Given::Table(table) => table.clone(),
+            Given::File(path) => {
+                look.file(&at, path)?;
+                read(look, &look.locate(path))
+                    .map_err(|error| look.fault(&at, error, "a line for each instant: time, discharge"))?
+            }
+        };
+        if let Err(problem) = hydrograph.check() {
+            return Err(look.fault(&at, problem, "as in { time = [0, 10, 60], discharge = [0, 5, 0] }"));
+        }
+        if let Some([x, y]) = self.direction
+            && !(x.is_finite() && y.is_finite() && x.hypot(y) > 0.0)
+        {
+            let message = format!("found [{x}, {y}], expected a direction [x, y]");
+            return Err(look.fault(
+                &format!("{key}.direction"),
+                message,
+                "as in direction = [1, 0], to the east",
+            ));
+        }
+        Ok(Inflow { over, hydrograph, direction: self.direction })
+    }
+}
+
+/// A hydrograph from a text file; a first line of words is left out.
+fn read(look: &Look, path: &Path) -> Result<Hydrograph, String> {
+    let name = path.display();
+    let bytes = look.files.bytes(path).map_err(|error| format!("cannot read {name}: {error}"))?;
+    let text = std::str::from_utf8(&bytes).map_err(|_| format!("{name} is not text"))?;
+    let words = |line: &str| line.trim_start().starts_with(|sign: char| sign.is_alphabetic() || sign == '"');
+    // The header stays as an empty line, so that the lines keep their numbers.
+    let start =
+        if text.lines().next().is_some_and(words) { text.find('\n').unwrap_or(text.len()) } else { 0 };
+    let (shape, values) =
+        array::read_text(&text.as_bytes()[start..]).map_err(|error| format!("cannot use {name}: {error}"))?;
+    let columns = shape[1];
+    if !(2..=3).contains(&columns) {
+        return Err(format!("{name} has {columns} columns, expected time, discharge and perhaps speed"));
+    }
+    let column = |k: usize| values.chunks_exact(columns).map(|row| row[k]).collect();
+    let speed = if columns == 3 { column(2) } else { Vec::new() };
+    Ok(Hydrograph { time: column(0), discharge: column(1), speed })
+}
+
+impl Hydrograph {
+    /// What is wrong with it.
+    fn check(&self) -> Result<(), String> {
+        let Self { time, discharge, speed } = self;
+        let growing = time.is_sorted_by(|a, b| a < b) && time.iter().all(|t| t.is_finite() && *t >= 0.0);
+        if time.len() < 2 || !growing {
+            return Err("the times must be at least two, growing numbers from 0 s on".to_owned());
+        }
+        for (name, values) in [("discharge", discharge), ("speed", speed)] {
+            if name == "speed" && values.is_empty() {
+                continue;
+            }
+            if values.len() != time.len() {
+                return Err(format!("{} times and {} values of {name}", time.len(), values.len()));
+            }
+            if let Some(value) = values.iter().find(|value| !(value.is_finite() && **value >= 0.0)) {
+                return Err(format!("found a {name} of {value}, expected numbers >= 0"));
+            }
+        }
+        if self.volume(f64::INFINITY) <= 0.0 {
+            return Err("no volume enters: every discharge is 0".to_owned());
+        }
+        Ok(())
+    }
+
+    /// The time after which nothing enters \[s\].
+    #[must_use]
+    pub fn end(&self) -> f64 {
+        self.time.last().copied().unwrap_or(0.0)
+    }
+
+    /// The volume that has entered by `time` \[m^3\]: the exact integral of the straight pieces.
+    #[must_use]
+    pub fn volume(&self, time: f64) -> f64 {
+        let mut volume = 0.0;
+        for (t, q) in self.time.windows(2).zip(self.discharge.windows(2)) {
+            if time <= t[0] {
+                break;
+            }
+            let share = ((time - t[0]) / (t[1] - t[0])).min(1.0);
+            volume += (t[1] - t[0]) * share * (q[0] + 0.5 * share * (q[1] - q[0]));
+        }
+        volume
+    }
+
+    /// The speed at `time` \[m/s\]; that of the nearest end before and after.
+    #[must_use]
+    pub fn speed_at(&self, time: f64) -> f64 {
+        let Some(last) = self.speed.len().checked_sub(1) else { return 0.0 };
+        let next = self.time.partition_point(|t| *t <= time);
+        if next == 0 || next > last {
+            return self.speed[next.min(last)];
+        }
+        let share = (time - self.time[next - 1]) / (self.time[next] - self.time[next - 1]);
+        self.speed[next - 1] + share * (self.speed[next] - self.speed[next - 1])
+    }
+}
