@@ -1,5 +1,8 @@
 //! A run one can hold: memory, views, save and restore, frames, all without a disk.
 
+#[path = "runs/supply.rs"]
+mod supply;
+
 use granflow::Case;
 use granflow::build::{Avalanche, Grid, Sandpile, Table};
 use granflow::case::Frames;

@@ -1,0 +1,286 @@
+//! Mass that comes in the course of a run: late and secondary releases, inflows by hydrographs.
+
+use granflow::Case;
+use granflow::run::Run;
+use std::fmt::Write;
+use std::fs;
+use std::path::Path;
+
+const CELL: f64 = 5.0;
+
+/// An ASCII grid; columns from the west, rows from the south.
+fn write_grid(path: &Path, [columns, rows]: [usize; 2], value: impl Fn(f64, f64) -> f64) {
+    let mut text = format!(
+        "ncols {columns}\nnrows {rows}\nxllcorner 0\nyllcorner 0\ncellsize {CELL}\nNODATA_value -9999\n"
+    );
+    for j in (0..rows).rev() {
+        for i in 0..columns {
+            write!(text, "{:?} ", value((i as f64 + 0.5) * CELL, (j as f64 + 0.5) * CELL)).unwrap();
+        }
+        text.push('\n');
+    }
+    fs::write(path, text).unwrap();
+}
+
+/// A valley: steep, then level, with banks.
+fn valley() -> tempfile::TempDir {
+    let folder = tempfile::tempdir().unwrap();
+    write_grid(&folder.path().join("dem.asc"), [70, 24], |x, y| {
+        500.0 - 0.6 * x.min(180.0) - 0.05 * (x - 180.0).max(0.0) + 0.003 * (y - 60.0).powi(2)
+    });
+    folder
+}
+
+const FIRST: &str = "[[release]]\ncap = { height = 3.0, centre = [40.0, 60.0], radius = 25.0 }\n";
+
+fn start(folder: &Path, parts: &str, time: &str) -> Box<dyn Run> {
+    try_start(folder, parts, time).unwrap()
+}
+
+fn try_start(folder: &Path, parts: &str, time: &str) -> Result<Box<dyn Run>, String> {
+    let path = folder.join("case.toml");
+    let text = format!(
+        "[terrain]\ndem = \"dem.asc\"\ncrs = \"EPSG:31287\"\n[material]\ndensity = 200.0\n\
+         friction.coulomb = {{ mu = 0.3 }}\n{parts}[time]\n{time}\n"
+    );
+    fs::write(&path, text).unwrap();
+    let said = |error: granflow::case::CaseError| format!("{error}");
+    let checked = Case::read(&path).map_err(said)?.check().map_err(said)?;
+    checked.start().map_err(|error| error.to_string())
+}
+
+fn thickness(run: &dyn Run) -> Vec<u64> {
+    run.field("thickness").unwrap().iter().map(f64::to_bits).collect()
+}
+
+fn number(run: &dyn Run, name: &str) -> Option<f64> {
+    run.numbers().into_iter().find(|(key, _)| key == name).map(|(_, value)| value)
+}
+
+fn steps(run: &mut dyn Run, count: usize) {
+    for _ in 0..count {
+        run.step(1e9).unwrap();
+    }
+}
+
+#[test]
+fn a_hydrograph_brings_its_integral_whatever_the_steps() {
+    let folder = valley();
+    let hydrograph = "time = [1.3, 2.0, 5.7, 9.1], discharge = [0.0, 40.0, 25.0, 0.0]";
+    let exact = 0.5 * 0.7 * 40.0 + 0.5 * 3.7 * 65.0 + 0.5 * 3.4 * 25.0;
+    for (over, rest) in [
+        ("line = [[30.0, 47.0], [30.0, 73.0]]", ""),
+        ("line = [[30.0, 47.0], [33.0, 73.0]]", ", speed = [3.0, 8.0, 8.0, 2.0]"),
+        ("polygons = \"pond.geojson\"", ""),
+    ] {
+        fs::write(
+            folder.path().join("pond.geojson"),
+            r#"{"type":"Polygon","coordinates":[[[20,50],[38,50],[38,71],[20,71],[20,50]]]}"#,
+        )
+        .unwrap();
+        let inflow = format!("[[inflow]]\n{over}\nhydrograph = {{ {hydrograph}{rest} }}\n");
+        let mut run = start(folder.path(), &inflow, "until = \"rest\"\nend = 400.0");
+        assert_eq!(run.totals().volume, 0.0);
+        run.to_rest(400.0).unwrap();
+        let poured = run.stepper().poured();
+        assert!((poured / exact - 1.0).abs() < 1e-13, "{over}{rest}: {poured} instead of {exact}");
+        let volume = run.totals().volume;
+        assert!((volume / exact - 1.0).abs() < 1e-12, "{over}{rest}: {volume} of {exact} lies");
+        assert!(run.at_rest() && run.time() > 9.1);
+    }
+}
+
+/// With a speed a mass arrives with its momentum: h u summed over the cells.
+#[test]
+fn an_inflow_brings_the_momentum_of_its_speed() {
+    let folder = tempfile::tempdir().unwrap();
+    write_grid(&folder.path().join("dem.asc"), [40, 40], |_, _| 100.0);
+    let inflow = "[[inflow]]\nline = [[100.0, 80.0], [100.0, 120.0]]\ndirection = [3.0, 4.0]\n\
+                  hydrograph = { time = [0.0, 0.002], discharge = [50.0, 50.0], speed = [10.0, 10.0] }\n";
+    let mut run = start(folder.path(), inflow, "end = 1.0");
+    let momentum = |run: &dyn Run| {
+        let [h, u, v] = ["thickness", "velocity_x", "velocity_y"]
+            .map(|name| run.field(name).unwrap().iter().collect::<Vec<f64>>());
+        let sum = |w: &[f64]| h.iter().zip(w).map(|(h, w)| h * w).sum::<f64>() * CELL * CELL;
+        [sum(&u), sum(&v)]
+    };
+    // The first step sees nothing yet; the second moves what came in the first.
+    while run.time() < 0.002 {
+        run.step(0.002).unwrap();
+    }
+    run.step(0.0021).unwrap();
+    let [x, y] = momentum(&*run);
+    let volume = run.totals().volume;
+    assert!((volume - 0.1).abs() < 1e-13, "{volume}");
+    // Friction took at most mu g t of the speed.
+    assert!(
+        (x / volume - 6.0).abs() < 0.02 && (y / volume - 8.0).abs() < 0.02,
+        "{} {}",
+        x / volume,
+        y / volume
+    );
+}
+
+/// Voellmy on a plane: q = h v and v^2 = xi h (sin - mu cos).
+#[test]
+fn a_steady_inflow_reaches_the_uniform_depth_of_its_discharge() {
+    let folder = tempfile::tempdir().unwrap();
+    let slope = 0.4_f64;
+    write_grid(&folder.path().join("dem.asc"), [60, 41], |x, _| 300.0 - slope * x);
+    let (mu, xi, width) = (0.2, 800.0, 205.0);
+    let [sin, cos] = [slope, 1.0].map(|leg| leg / 1.0_f64.hypot(slope));
+    let discharge = 410.0;
+    let per_width: f64 = discharge / width;
+    let depth = (per_width * per_width / (xi * (sin - mu * cos))).cbrt();
+    let path = folder.path().join("case.toml");
+    for scheme in ["energy_stable", "energy_stable_2"] {
+        let text = format!(
+            "[terrain]\ndem = \"dem.asc\"\ncrs = \"EPSG:31287\"\n[material]\ndensity = 200.0\n\
+             friction.voellmy = {{ mu = {mu}, xi = {xi:?} }}\n[scheme]\nname = \"{scheme}\"\n\
+             [[inflow]]\nline = [[22.5, 0.0], [22.5, 205.0]]\n\
+             hydrograph = {{ time = [0.0, 500.0], discharge = [{discharge:?}, {discharge:?}], speed = [4.0, 4.0] }}\n\
+             [time]\nend = 150.0\n"
+        );
+        fs::write(&path, text).unwrap();
+        let mut run = Case::read(&path).unwrap().check().unwrap().start().unwrap();
+        run.until(150.0).unwrap();
+        let h: Vec<f64> = run.field("thickness").unwrap().iter().collect();
+        let middle = &h[20 * 60 + 30..20 * 60 + 55];
+        let worst = middle.iter().map(|h| (h / depth - 1.0).abs()).fold(0.0, f64::max);
+        println!("{scheme}: {depth} m to {worst:e}");
+        assert!(worst < 1e-6, "{scheme}: {middle:?} instead of {depth}");
+    }
+}
+
+#[test]
+fn a_late_release_flows_as_one_at_the_start() {
+    let folder = valley();
+    let mut early = start(folder.path(), FIRST, "end = 50.0");
+    let mut late = start(folder.path(), &format!("{FIRST}at = 3.0\n"), "end = 50.0");
+    late.step(1e9).unwrap();
+    assert_eq!((late.time(), late.totals().volume, late.at_rest()), (3.0, 0.0, false));
+    steps(&mut *early, 60);
+    steps(&mut *late, 60);
+    assert!(thickness(&*early) == thickness(&*late));
+    assert!((late.time() - 3.0 - early.time()).abs() < 1e-12);
+    assert!((late.stepper().poured() / early.totals().volume - 1.0).abs() < 1e-13);
+}
+
+#[test]
+fn a_secondary_release_starts_when_it_is_hit_and_rest_does_not_wait_for_one_that_is_not() {
+    let folder = valley();
+    let second =
+        "[[release]]\ncap = { height = 2.0, centre = [150.0, 60.0], radius = 20.0 }\nwhen = \"hit\"\n";
+    let aside = "[[release]]\ncap = { height = 2.0, centre = [40.0, 8.0], radius = 5.0 }\nwhen = \"hit\"\n";
+    let mut run = start(folder.path(), &format!("{FIRST}{second}{aside}"), "until = \"rest\"");
+    let before = run.totals().volume;
+    while run.stepper().poured() == 0.0 {
+        run.step(1e9).unwrap();
+    }
+    // The front has some 100 m to go.
+    assert!(run.time() > 2.0 && run.time() < 15.0, "{}", run.time());
+    assert!(number(&*run, "unreleased_volume").unwrap() > 0.0);
+    run.to_rest(1000.0).unwrap();
+    assert!(run.at_rest());
+    let whole = before + run.stepper().poured();
+    assert!((run.totals().volume / whole - 1.0).abs() < 1e-12);
+    assert!(number(&*run, "unreleased_volume").unwrap() > 0.0, "nothing came by there");
+}
+
+#[test]
+fn the_order_of_the_releases_changes_no_bit() {
+    let folder = valley();
+    let cap = |height: f64, x: f64, when: &str| {
+        format!(
+            "[[release]]\ncap = {{ height = {height:?}, centre = [{x:?}, 60.0], radius = 20.0 }}\n{when}\n"
+        )
+    };
+    let parts = [
+        cap(1.1, 130.0, "at = 2.0"),
+        cap(0.7, 133.0, "at = 2.0"),
+        cap(0.3, 137.0, "when = \"hit\""),
+        cap(1.3, 135.0, "at = 2.0"),
+        FIRST.to_owned(),
+    ];
+    let ends = [[0, 1, 2, 3, 4], [4, 3, 2, 1, 0], [3, 0, 4, 2, 1]].map(|order| {
+        let text: String = order.iter().map(|k| parts[*k].as_str()).collect();
+        let mut run = start(folder.path(), &text, "end = 50.0");
+        run.until(8.0).unwrap();
+        thickness(&*run)
+    });
+    assert!(ends[0] == ends[1] && ends[0] == ends[2]);
+}
+
+#[test]
+fn a_run_taken_up_in_the_middle_goes_on_to_the_same_bits() {
+    let folder = valley();
+    let parts = format!(
+        "{FIRST}[[release]]\ncap = {{ height = 2.0, centre = [120.0, 60.0], radius = 20.0 }}\nwhen = \"hit\"\n\
+         [[release]]\ncap = {{ height = 2.0, centre = [90.0, 60.0], radius = 20.0 }}\nat = 6.0\n\
+         [[inflow]]\nline = [[60.0, 50.0], [60.0, 70.0]]\n\
+         hydrograph = {{ time = [1.0, 9.0], discharge = [30.0, 10.0] }}\n"
+    );
+    for middle in [0.5, 3.0, 7.0, 12.0] {
+        let mut whole = start(folder.path(), &parts, "end = 50.0");
+        let mut part = start(folder.path(), &parts, "end = 50.0");
+        while whole.time() < middle {
+            whole.step(1e9).unwrap();
+        }
+        part.restore(whole.save().into_owned()).unwrap();
+        steps(&mut *whole, 80);
+        steps(&mut *part, 80);
+        assert!(thickness(&*whole) == thickness(&*part), "from {middle} s");
+        assert_eq!(whole.stepper().poured().to_bits(), part.stepper().poured().to_bits());
+    }
+}
+
+#[test]
+fn what_is_wrong_with_a_supply_is_named_with_a_cure() {
+    let folder = valley();
+    fs::write(folder.path().join("q.csv"), "time,discharge\n0,5\n10,many\n").unwrap();
+    fs::write(folder.path().join("one.csv"), "0\n10\n").unwrap();
+    let table = "hydrograph = { time = [0, 9], discharge = [5, 0] }";
+    for (parts, said) in [
+        (format!("{FIRST}at = 3.0\nwhen = \"hit\"\n"), vec!["at", "when"]),
+        (format!("{FIRST}at = -3.0\n"), vec![">= 0"]),
+        (format!("{FIRST}when = \"hit\"\n"), vec!["starts by itself"]),
+        (format!("[[inflow]]\n{table}\n"), vec!["exactly one of line, polygons"]),
+        (format!("[[inflow]]\nline = [[10, 20]]\n{table}\n"), vec!["two points"]),
+        (format!("[[inflow]]\nline = [[10, 20], [900, 20]]\n{table}\n"), vec!["no elevation", "(350"]),
+        (
+            "[[inflow]]\nline = [[10, 20], [10, 40]]\nhydrograph = \"q.csv\"\n".to_owned(),
+            vec!["q.csv", "line 3", "many"],
+        ),
+        (
+            "[[inflow]]\nline = [[10, 20], [10, 40]]\nhydrograph = \"one.csv\"\n".to_owned(),
+            vec!["one.csv", "1 columns"],
+        ),
+        (
+            "[[inflow]]\nline = [[10, 20], [10, 40]]\nhydrograph = \"none.csv\"\n".to_owned(),
+            vec!["cannot read", "none.csv"],
+        ),
+        (
+            "[[inflow]]\nline = [[10, 20], [10, 40]]\nhydrograph = { time = [5, 4], discharge = [1, 1] }\n"
+                .to_owned(),
+            vec!["growing"],
+        ),
+        (
+            "[[inflow]]\nline = [[10, 20], [10, 40]]\nhydrograph = { time = [4, 5], discharge = [1] }\n"
+                .to_owned(),
+            vec!["2 times and 1 values of discharge"],
+        ),
+        (
+            "[[inflow]]\nline = [[10, 20], [10, 40]]\nhydrograph = { time = [4, 5], discharge = [0, 0] }\n"
+                .to_owned(),
+            vec!["no volume"],
+        ),
+    ] {
+        let error = match try_start(folder.path(), &parts, "end = 9.0") {
+            Ok(_) => panic!("{parts} passed"),
+            Err(error) => error,
+        };
+        for part in said {
+            assert!(error.contains(part), "{parts}: `{part}` is not in\n{error}");
+        }
+    }
+}
