@@ -7,6 +7,7 @@ use std::collections::BTreeMap;
 use std::env;
 use std::fs;
 use std::path::{Path, PathBuf};
+use std::process::ExitCode;
 use std::str::FromStr as _;
 
 use anyhow::{Context, Result, bail};
@@ -22,7 +23,17 @@ mod verification;
 
 use pages::{Page, Pages, file_of};
 
-fn main() -> Result<()> {
+fn main() -> ExitCode {
+    match site() {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(error) => {
+            eprintln!("error: {error:#}");
+            ExitCode::FAILURE
+        }
+    }
+}
+
+fn site() -> Result<()> {
     let arguments: Vec<PathBuf> = env::args_os().skip(1).map(PathBuf::from).collect();
     let [verified, api, site] = arguments.as_slice() else {
         bail!(
