@@ -6,9 +6,8 @@ import pathlib
 import subprocess
 import sys
 
-from environment import Refusal, enter, fresh_folder, guarded
+from environment import AVAFRAME, Refusal, enter, fresh_folder, guarded
 
-PACKAGES = ["avaframe==2.1", "numpy==1.26.4", "rasterio==1.4.4", "fiona==1.10.1", "matplotlib==3.11.2"]
 SAMOSAT = {"samosat": ("samosAT", 0.155), "samosat_medium": ("samosATMedium", 0.17), "samosat_small": ("samosATSmall", 0.22)}
 LAWS = [*SAMOSAT, "coulomb", "voellmy"]
 DENSITY = 200.0
@@ -189,7 +188,7 @@ def main():
     if chosen.path:
         inputs(chosen.path)
     out = fresh_folder(chosen.out)
-    enter("avaframe", PACKAGES, chosen.venv)
+    enter("avaframe", AVAFRAME, chosen.venv)
     import runs
 
     program = runs.program(chosen.granflow)

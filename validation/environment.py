@@ -8,6 +8,7 @@ import sys
 
 HERE = pathlib.Path(__file__).resolve().parent
 MARK = "granflow-packages.txt"
+AVAFRAME = ["avaframe==2.1", "numpy==1.26.4", "rasterio==1.4.4", "fiona==1.10.1", "matplotlib==3.11.2", "netCDF4==1.7.5.1.post1"]
 
 
 class Refusal(Exception):
