@@ -189,10 +189,9 @@ def main():
         inputs(chosen.path)
     out = fresh_folder(chosen.out)
     enter("avaframe", AVAFRAME, chosen.venv)
-    import runs
+    from locate import program
 
-    program = runs.program(chosen.granflow)
-    dem, release = inputs(chosen.path) if chosen.path else mountain(out / "mountain", program)
+    dem, release = inputs(chosen.path) if chosen.path else mountain(out / "mountain", program(chosen.granflow))
     compare(chosen, out, dem.resolve(), release.resolve())
     print((out / "comparison.md").read_text(encoding="utf-8"))
     print(f"written: {out / 'comparison.md'}, comparison.json, a figure for each law and cell size, and every run in a folder of its own")

@@ -12,6 +12,7 @@ import time
 import numpy
 import rasterio
 from environment import HERE, Refusal
+from locate import program
 
 MAPS = {"pressure": ("ppr", "peak_pressure"), "speed": ("pfv", "peak_speed"), "thickness": ("pft", "peak_thickness")}
 
@@ -49,16 +50,6 @@ def elevation(path):
     """Heights with NaN for nodata, and their place."""
     with rasterio.open(path) as file:
         return file.read(1, masked=True).astype("float64").filled(numpy.nan), file.transform
-
-
-def program(path=None):
-    """The program granflow: the one given, the one built in this clone, or the one on the path."""
-    built = HERE.parent / "target" / "release" / ("granflow.exe" if sys.platform == "win32" else "granflow")
-    found = shutil.which(path) if path else (str(built) if built.is_file() else shutil.which("granflow"))
-    if not found:
-        where = f"{path} is no program" if path else f"there is no program granflow, neither at {built} nor on the path"
-        raise Refusal(where, "cargo build --release -p granflow-cli; or --granflow PROGRAM")
-    return found
 
 
 def command(words, what, log):
