@@ -168,15 +168,22 @@ def two_runs(out, program):
 
 
 def draw(run, folder):
-    """tilupy's maps of the peaks and of the end, its path of the centre of mass, its volume over time."""
+    """tilupy's maps of the peaks and of the end, its volume, and the way of its centre of mass from where it started."""
     import matplotlib.pyplot as plt
+    import tilupy.read
 
     folder.mkdir()
-    for output in ("h_max", "u_max", "h_final", "volume", "centermass"):
-        options = {"minval_abs": 0.01, "cmap": "viridis"} if "_" in output else {}
-        axis = run.plot(output, folder_out=None, display_plot=True, **options)
-        axis.figure.savefig(folder / f"{output}.png", dpi=120, bbox_inches="tight")
-        plt.close("all")
+    axes = {name: run.plot(name, minval_abs=0.01, cmap="viridis") for name in ("h_max", "u_max", "h_final")}
+    axes["volume"] = run.plot("volume")
+    axes["volume"].set_ylabel("volume, by tilupy's slopes [m³]")
+    centre = run.get_output("centermass")
+    way = tilupy.read.TemporalResults0D("way", centre.d - centre.d[:, :1], centre.t, scalar_names=["east", "north", "up"])
+    axes["centermass"] = way.plot()
+    axes["centermass"].set_ylabel("way of the centre of mass [m]")
+    axes["centermass"].legend()
+    for name, axis in axes.items():
+        axis.figure.savefig(folder / f"{name}.png", dpi=120, bbox_inches="tight")
+    plt.close("all")
 
 
 def observed(path, run):
