@@ -25,6 +25,11 @@ The laws are AvaFrame's: samosat (mu 0.155, releases above 60,000 m3), samosat_m
 --reference FOLDER holds rasters of a com1DFA run that is finished, on the same cells: one *ppr*, one *pfv*, one *pft*, .asc or
 .tif. They are scored beside the others; say with --law which law they were made with.
 
+The curvature that loads the friction is taken by com1DFA from the way of a particle in one step, about one cell, and by granflow over
+--curvature, twice the cell unless given: on a rough raster the result hangs on this length more than on the code.
+
+--earlier FOLDER is the --out of an earlier comparison: its com1DFA runs are taken, not computed again, where all was the same.
+
 Both codes compute on the raster that com1DFA resampled, so that maps are compared cell by cell. Both end when the kinetic energy
 falls below 1 % of its peak, AvaFrame's rule, or at 400 s; with --until rest granflow goes on until it rests.
 
@@ -44,6 +49,8 @@ def arguments():
     parser.add_argument("--until", choices=["energy", "rest"], default="energy", help="how granflow ends (default energy)")
     parser.add_argument("--seed", action="append", type=int, help="of com1DFA's particles; the first is the reference; default: 12345, 1")
     parser.add_argument("--reference", type=pathlib.Path, help="folder with rasters of a finished com1DFA run")
+    parser.add_argument("--curvature", type=float, help="of granflow: length [m] over which the bed's curvature is taken; default: two cells")
+    parser.add_argument("--earlier", type=pathlib.Path, help="the --out of an earlier comparison")
     parser.add_argument("--com1dfa", action="append", default=[], metavar="KEY=VALUE", help="a setting of com1DFA, may be repeated")
     parser.add_argument("--set", action="append", default=[], metavar="KEY=VALUE", help="a key of granflow's case, may be repeated")
     parser.add_argument("--threads", type=int, default=1, help="of granflow (default 1: com1DFA uses one)")
@@ -57,8 +64,8 @@ def arguments():
     for change in chosen.com1dfa + chosen.set:
         if "=" not in change:
             parser.error(f"{change}: a change is KEY=VALUE")
-    if min(chosen.cell + chosen.pressure) <= 0:
-        parser.error("cell sizes and pressures are positive")
+    if min(chosen.cell + chosen.pressure + [chosen.curvature or 1]) <= 0:
+        parser.error("cell sizes, pressures and the length of the curvature are positive")
     return chosen
 
 
@@ -122,11 +129,12 @@ def law(name, mu):
     return "friction.voellmy = { mu = 0.155, xi = 4000.0 }", {"frictModel": "Voellmy", "muvoellmy": 0.155, "xsivoellmy": 4000.0}
 
 
-def case(dem, release, friction, scheme, until):
+def case(dem, release, friction, scheme, until, curvature):
     """The case of granflow that asks for what com1DFA was asked for."""
     stop = "stop.kinetic_energy = 0.01\nend = 400.0" if until == "energy" else 'until = "rest"\nend = 10000.0'
     return f"""[terrain]
 dem = {json.dumps(str(dem))}
+curvature = {{ length = {float(curvature)} }}
 [material]
 density = {DENSITY}
 {friction}
@@ -168,13 +176,14 @@ def compare(chosen, out, dem, release):
                 print(f"{name}, {cell:g} m: com1DFA, seed {seed}", file=sys.stderr, flush=True)
                 asked = {"simTypeList": "null", "resType": "ppr|pft|pfv|FT", "rho": DENSITY, "meshCellSize": cell, "seed": seed, **settings,
                          **dict(change.split("=", 1) for change in chosen.com1dfa)}
-                found.append(runs.com1dfa(folder / f"com1dfa_{seed}", dem, release, asked, f"com1DFA, seed {seed}"))
+                earlier = chosen.earlier / folder.name / f"com1dfa_{seed}" if chosen.earlier else None
+                found.append(runs.com1dfa(folder / f"com1dfa_{seed}", dem, release, asked, f"com1DFA, seed {seed}", earlier))
             ground = runs.dem_of_com1dfa(found[0])
             if chosen.reference:
                 found.append(finished(chosen.reference))
             for scheme in chosen.scheme:
                 print(f"{name}, {cell:g} m: granflow, {scheme}", file=sys.stderr, flush=True)
-                text = case(ground, release, friction, scheme, chosen.until)
+                text = case(ground, release, friction, scheme, chosen.until, chosen.curvature or 2 * cell)
                 found.append(runs.granflow(folder / scheme, text, f"granflow, {scheme}", threads=chosen.threads, sets=chosen.set,
                                            path=chosen.granflow))
             groups.append(report.group(name, cell, ground, polygons, found, chosen.pressure))
@@ -187,6 +196,8 @@ def main():
     chosen = arguments()
     if chosen.path:
         inputs(chosen.path)
+    if chosen.earlier and not (chosen.earlier / "comparison.json").is_file():
+        raise Refusal(f"{chosen.earlier} holds no comparison.json", "give the --out of an earlier comparison")
     out = fresh_folder(chosen.out)
     enter("avaframe", AVAFRAME, chosen.venv)
     from locate import program

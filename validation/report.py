@@ -89,10 +89,11 @@ def write(out, groups, chosen):
     versions = sorted({row["version"] for group in groups for row in group.rows if row["version"]})
     head = [f"# granflow beside AvaFrame: {chosen.path.resolve().name if chosen.path else 'the mountain of granflow new avalanche'}", "",
             f"{', '.join(versions)}, Python {sys.version.split()[0]}. Threads of granflow: {chosen.threads}; com1DFA has one.",
-            f"com1DFA with {', '.join(chosen.com1dfa) or 'its defaults'}; granflow with {', '.join(chosen.set) or 'its defaults'}, until "
+            f"com1DFA with {', '.join(chosen.com1dfa) or 'its defaults'}; granflow with curvature over {f'{chosen.curvature:g} m' if chosen.curvature else 'two cells'}"
+             f"{''.join(', ' + change for change in chosen.set)}, until "
             f"{'the kinetic energy is 1 % of its peak' if chosen.until == 'energy' else 'rest'}.", ""]
     (out / "comparison.md").write_text("\n".join(head + [table(group) for group in groups]), encoding="utf-8")
-    content = {"versions": versions, "com1dfa": chosen.com1dfa, "granflow": chosen.set, "until": chosen.until,
+    content = {"versions": versions, "com1dfa": chosen.com1dfa, "granflow": chosen.set, "curvature_m": chosen.curvature, "until": chosen.until,
                "groups": [{"law": group.law, "cell_m": group.cell, "runs": group.rows} for group in groups]}
     (out / "comparison.json").write_text(json.dumps(content, indent=2), encoding="utf-8")
 
