@@ -1,5 +1,7 @@
 //! `[grid]`: the cells of a scaled case.
 
+use std::fmt;
+
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -33,8 +35,8 @@ impl Grid {
         std::iter::once(&self.x).chain(&self.y)
     }
 
-    /// Ends, widths and number of the cells.
-    pub(crate) fn check(&self, look: &Look) -> Result<(), CaseError> {
+    /// Ends, widths and number of the cells; a cell takes `bytes` at least, before any of them is asked for.
+    pub(crate) fn check(&self, look: &Look, bytes: f64) -> Result<(), CaseError> {
         self.x.check(look, "grid.x")?;
         self.y.as_ref().map_or(Ok(()), |y| y.check(look, "grid.y"))?;
         let cells = self.cells();
@@ -42,8 +44,7 @@ impl Grid {
             let message = format!("{} x {} cells are more than any machine holds", cells[0], cells[1]);
             return Err(look.source.fault("grid.x.cells", message));
         }
-        // The state at the start alone.
-        let needed = 24.0 * cells[0] as f64 * cells[1] as f64;
+        let needed = bytes * cells[0] as f64 * cells[1] as f64;
         if let Some(free) = memory::available().filter(|free| needed > *free as f64) {
             let [needed, free] = [needed, free as f64].map(memory::in_words);
             let message =
@@ -60,13 +61,18 @@ impl Grid {
     /// The centres of the cells.
     #[must_use]
     pub fn centres(&self) -> Points {
-        Points { x: self.x.centres(), y: self.y.as_ref().map(Axis::centres) }
+        self.points(Axis::centre, 0)
     }
 
     /// The corners of the cells, one more along each axis than there are cells.
     #[must_use]
     pub fn nodes(&self) -> Points {
-        Points { x: self.x.faces(), y: self.y.as_ref().map(Axis::faces) }
+        self.points(Axis::face, 1)
+    }
+
+    fn points(&self, place: fn(&Axis, usize) -> f64, more: usize) -> Points {
+        let along = |axis: &Axis| Places { axis: axis.clone(), place, count: axis.cells + more };
+        Points { x: along(&self.x), y: self.y.as_ref().map(along) }
     }
 }
 
@@ -136,41 +142,70 @@ impl Axis {
         let all = 2 * self.cells;
         (self.from * (all - halves) as f64 + self.to * halves as f64) / all as f64
     }
-
-    /// Centres of all cells.
-    #[must_use]
-    pub fn centres(&self) -> Vec<f64> {
-        (0..self.cells).map(|index| self.centre(index)).collect()
-    }
-
-    /// All faces, one more than there are cells.
-    #[must_use]
-    pub fn faces(&self) -> Vec<f64> {
-        (0..=self.cells).map(|index| self.face(index)).collect()
-    }
 }
 
-/// The points where a quantity has values: every x with every y, x fastest.
+/// The points where a quantity has values: every x with every y, x fastest. They take no memory.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Points {
     /// Places along x.
-    pub x: Vec<f64>,
+    pub x: Places,
     /// Places along y; none in one dimension, where y = 0.
-    pub y: Option<Vec<f64>>,
+    pub y: Option<Places>,
+}
+
+/// The centres of the cells of an axis, or their ends.
+#[derive(Clone)]
+pub struct Places {
+    axis: Axis,
+    place: fn(&Axis, usize) -> f64,
+    count: usize,
+}
+
+impl Places {
+    /// How many there are.
+    #[must_use]
+    pub fn count(&self) -> usize {
+        self.count
+    }
+
+    /// Place number `index`.
+    #[must_use]
+    pub fn at(&self, index: usize) -> f64 {
+        (self.place)(&self.axis, index)
+    }
+
+    /// All of them.
+    #[must_use]
+    pub fn to_vec(&self) -> Vec<f64> {
+        (0..self.count).map(|index| self.at(index)).collect()
+    }
+}
+
+impl PartialEq for Places {
+    fn eq(&self, other: &Self) -> bool {
+        (&self.axis, self.count) == (&other.axis, other.count)
+    }
+}
+
+impl fmt::Debug for Places {
+    fn fmt(&self, to: &mut fmt::Formatter) -> fmt::Result {
+        write!(to, "{} places of {:?}", self.count, self.axis)
+    }
 }
 
 impl Points {
     /// Number of points along x and along y (1 in one dimension).
     #[must_use]
     pub fn counts(&self) -> [usize; 2] {
-        [self.x.len(), self.y.as_ref().map_or(1, Vec::len)]
+        [self.x.count(), self.y.as_ref().map_or(1, Places::count)]
     }
 
     /// Point number `index`.
     #[must_use]
     pub fn at(&self, index: usize) -> [f64; 2] {
-        let y = self.y.as_ref().map_or(0.0, |y| y[index / self.x.len()]);
-        [self.x[index % self.x.len()], y]
+        let columns = self.x.count();
+        let y = self.y.as_ref().map_or(0.0, |y| y.at(index / columns));
+        [self.x.at(index % columns), y]
     }
 
     /// All points in their order.

@@ -2,7 +2,7 @@
 //!
 //! [`Case::read`] reads a file, [`Case::parse`] a text; both know the place of every key, so that each error names
 //! file, line and key, what was found and what is allowed. [`Case::check`] then says everything that can be said
-//! before work starts and gives a [`Checked`] case: every formula, file and default evaluated, once, for a run to take.
+//! before work starts and gives a [`Checked`] case: every formula read and looked at in every cell, every file and default evaluated once, for a run to take.
 //!
 //! ```
 //! use granflow_case::{Case, Kind, NoFiles};
@@ -20,7 +20,7 @@
 //! let checked = case.check(&NoFiles)?;
 //! assert_eq!(checked.run.scheme, "energy_stable");
 //! let Kind::Chute(chute) = checked.kind else { unreachable!("it has a grid") };
-//! assert_eq!(chute.initial.thickness[120], 2.3);
+//! assert_eq!(chute.initial.thickness.at(120), 2.3);
 //! # Ok::<(), granflow_case::CaseError>(())
 //! ```
 //!
@@ -58,7 +58,7 @@ pub use fault::{CaseError, CaseErrorKind};
 pub use file_kind::FileKind;
 pub use files::{FileAccess, NoFiles, Outline};
 pub use formula::{Formula, FormulaError};
-pub use grid::{Axis, Grid, Points};
+pub use grid::{Axis, Grid, Places, Points};
 pub use kinds::*;
 pub use nearest::nearest;
 pub use plan::{Ends, Frames, OutputPlan, RunPlan, Stepping, Until};

@@ -166,33 +166,24 @@ impl Quantity {
         }
     }
 
-    /// The values at all points.
-    pub(crate) fn on(&self, points: &Points, look: &Look) -> Result<Vec<f64>, PartFault> {
+    /// The quantity ready to be evaluated: formulas are read, files too.
+    pub(crate) fn prepare(&self, points: &Points, look: &Look) -> Result<Prepared, PartFault> {
         self.verify()?;
-        let fill =
-            |value: &dyn Fn(f64, f64) -> f64| points.iter().map(|[x, y]| value(x, y)).collect::<Vec<f64>>();
-        Ok(match self {
-            Self::Constant(value) => fill(&|_, _| *value),
-            Self::Shape(Shape::Steps(Steps { at, values })) => {
-                fill(&|x, _| values[at.partition_point(|jump| *jump < x)])
-            }
-            Self::Shape(Shape::Cap(Cap { height, centre, radius })) => {
-                fill(&|x, y| (height * (1.0 - (centre.distance(x, y) / radius).powi(2))).max(0.0))
-            }
-            Self::Shape(Shape::Parabola(Parabola { height, curvature, centre, floor })) => {
-                fill(&|x, y| (height - curvature * centre.distance(x, y).powi(2)).max(*floor))
-            }
-            Self::Shape(Shape::Cone(Cone { height, centre, slope })) => {
-                fill(&|x, y| (height - slope * centre.distance(x, y)).max(0.0))
-            }
-            Self::Shape(Shape::Formula(text)) => {
-                let formula = compile(text)?;
-                fill(&|x, y| formula.at(&[x, y]))
-            }
-            Self::Shape(Shape::File(path)) => {
+        let shape = match self {
+            Self::Constant(value) => return Ok(Prepared::Constant(*value)),
+            Self::Shape(shape) => shape.clone(),
+        };
+        Ok(match shape {
+            Shape::Steps(steps) => Prepared::Steps(steps),
+            Shape::Cap(cap) => Prepared::Cap(cap),
+            Shape::Parabola(parabola) => Prepared::Parabola(parabola),
+            Shape::Cone(cone) => Prepared::Cone(cone),
+            Shape::Formula(text) => Prepared::Formula(compile(&text)?),
+            Shape::File(path) => {
                 let path = look.source.folder().join(path);
-                array::read(look.files, &path, points.counts())
-                    .map_err(|message| PartFault::new("file", message).file())?
+                let values = array::read(look.files, &path, points.counts())
+                    .map_err(|message| PartFault::new("file", message).file())?;
+                Prepared::Values(values)
             }
         })
     }
@@ -206,6 +197,66 @@ impl Quantity {
     }
 }
 
+/// A quantity that can be evaluated at any point.
+#[derive(Debug, Clone)]
+pub(crate) enum Prepared {
+    Constant(f64),
+    Steps(Steps),
+    Cap(Cap),
+    Parabola(Parabola),
+    Cone(Cone),
+    Formula(Formula),
+    Values(Vec<f64>),
+}
+
+impl Prepared {
+    /// The value at point number `index`; where the point is, is found only if it matters.
+    fn at(&self, index: usize, points: &Points) -> f64 {
+        let place = || points.at(index);
+        let distance = |centre: &Centre| {
+            let [x, y] = place();
+            centre.distance(x, y)
+        };
+        match self {
+            Self::Constant(value) => *value,
+            Self::Values(values) => values[index],
+            Self::Formula(formula) => formula.at(&place()),
+            Self::Steps(Steps { at, values }) => {
+                let [x, _] = place();
+                values[at.partition_point(|jump| *jump < x)]
+            }
+            Self::Cap(Cap { height, centre, radius }) => {
+                (height * (1.0 - (distance(centre) / radius).powi(2))).max(0.0)
+            }
+            Self::Parabola(Parabola { height, curvature, centre, floor }) => {
+                (height - curvature * distance(centre).powi(2)).max(*floor)
+            }
+            Self::Cone(Cone { height, centre, slope }) => (height - slope * distance(centre)).max(0.0),
+        }
+    }
+}
+
+/// A quantity that was checked at every point, to be evaluated where it is asked for: it takes no memory but for what a file holds.
+#[derive(Debug, Clone)]
+pub struct Values {
+    quantity: Prepared,
+    points: Points,
+}
+
+impl Values {
+    /// The value at point number `index`, x fastest.
+    #[must_use]
+    pub fn at(&self, index: usize) -> f64 {
+        self.quantity.at(index, &self.points)
+    }
+
+    /// The values at all points in their order.
+    pub fn iter(&self) -> impl Iterator<Item = f64> + '_ {
+        let count: usize = self.points.counts().iter().product();
+        (0..count).map(|index| self.at(index))
+    }
+}
+
 impl Look<'_> {
     /// A quantity at all points, 0 where the case does not say; every value is finite and of a usual size.
     pub fn evaluate(
@@ -213,15 +264,17 @@ impl Look<'_> {
         points: &Points,
         key: &str,
         quantity: Option<&Quantity>,
-    ) -> Result<Vec<f64>, CaseError> {
+    ) -> Result<Values, CaseError> {
         let quantity = quantity.unwrap_or(&Quantity::Constant(0.0));
-        let values = quantity.on(points, self).map_err(|fault| self.part_fault(key, fault))?;
+        let quantity = quantity.prepare(points, self).map_err(|fault| self.part_fault(key, fault))?;
+        let values = Values { quantity, points: points.clone() };
         let usual = |value: f64| value.abs() <= LARGEST;
-        match values.iter().position(|value| !usual(*value)) {
+        let wrong = values.iter().position(|value| !usual(value));
+        match wrong {
             None => Ok(values),
             Some(index) => Err(self.fault(
                 key,
-                format!("the value is {:?} at {}", values[index], points.place(index)),
+                format!("the value is {:?} at {}", values.at(index), points.place(index)),
                 "every cell needs a finite number, between -1e12 and 1e12",
             )),
         }
@@ -233,13 +286,14 @@ impl Look<'_> {
         points: &Points,
         key: &str,
         quantity: Option<&Quantity>,
-    ) -> Result<Vec<f64>, CaseError> {
+    ) -> Result<Values, CaseError> {
         let values = self.evaluate(points, key, quantity)?;
-        match values.iter().position(|value| *value < 0.0) {
+        let wrong = values.iter().position(|value| value < 0.0);
+        match wrong {
             None => Ok(values),
             Some(index) => {
                 let name = key.rsplit('.').next().unwrap_or(key).replace('_', " ");
-                let message = format!("the {name} is {} at {}", values[index], points.place(index));
+                let message = format!("the {name} is {} at {}", values.at(index), points.place(index));
                 let cure = format!("a {name} is never negative; max(..., 0) cuts a formula off");
                 Err(self.fault(key, message, &cure))
             }

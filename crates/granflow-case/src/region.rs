@@ -149,6 +149,7 @@ impl Area {
 #[cfg(test)]
 mod tests {
     use super::super::files::NoFiles;
+    use super::super::grid::{Axis, Grid};
     use super::super::source::Source;
     use super::*;
 
@@ -158,7 +159,8 @@ mod tests {
     }
 
     fn plane() -> Points {
-        Points { x: vec![0.0], y: Some(vec![0.0]) }
+        let axis = Axis { from: -1.0, to: 1.0, cells: 3 };
+        Grid { x: axis.clone(), y: Some(axis) }.centres()
     }
 
     #[test]

@@ -429,18 +429,18 @@ fn a_sandpile_is_described() {
     let folder = tempfile::tempdir().expect("a folder");
     assert_eq!(granflow(folder.path(), &["new", "sandpile_l", "l.toml"]).status.code(), Some(0));
     let output = granflow(folder.path(), &["check", "l.toml"]);
-    let said = said(&output);
+    let text = said(&output);
     // three quarters of the square, 40 edges along each direction of which the wall takes 20
-    assert!(said.contains("1200 cells, 0.750000 in all"), "{said}");
-    assert!(said.contains("open: 40 left, 40 right, 40 bottom, 20 top; walls: 20 top"), "{said}");
-    assert!(said.contains("0.375000 a time at the start"), "{said}");
+    assert!(text.contains("1200 cells, 0.750000 in all"), "{text}");
+    assert!(text.contains("open: 40 left, 40 right, 40 bottom, 20 top; walls: 20 top"), "{text}");
+    assert!(text.contains("0.375000 a time at the start"), "{text}");
     // 0.225 * 0.025/2
-    assert!(said.contains("of 2.812e-3 in time") && said.contains("changes below 1e-8"), "{said}");
+    assert!(text.contains("of 2.812e-3 in time") && text.contains("changes below 1e-8"), "{text}");
     let direct = ["check", "l.toml", "--set", "time={until=\"steady\",method=\"direct\"}"];
-    let said = said(&granflow(folder.path(), &direct));
-    assert!(said.contains("at the equilibrium, computed directly"), "{said}");
+    let text = said(&granflow(folder.path(), &direct));
+    assert!(text.contains("at the equilibrium, computed directly"), "{text}");
     // what is printed is a case again
-    let resolved = said.split_once(":\n\n").expect("the resolved case").1;
+    let resolved = text.split_once(":\n\n").expect("the resolved case").1;
     std::fs::write(folder.path().join("again.toml"), resolved).expect("a case");
     let again = granflow(folder.path(), &["check", "again.toml"]);
     assert_eq!(again.status.code(), Some(0), "{}", told(&again));

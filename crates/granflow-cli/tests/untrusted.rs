@@ -3,7 +3,7 @@
 mod support;
 
 use std::path::Path;
-use support::{granflow, said, told};
+use support::{PROGRAM, granflow, said, told};
 
 const CASE: &str = r#"title = "test"
 [grid]
@@ -83,6 +83,41 @@ fn of_a_file_that_is_no_case_only_the_name_is_shown() {
     // a case with a mistake is shown
     put(folder.path(), "case.toml", &CASE.replace("steps = 3", "steps = = 3"));
     assert!(told(&granflow(folder.path(), &["run", "case.toml"])).contains("steps = = 3"));
+}
+
+#[test]
+#[cfg(target_os = "linux")]
+fn a_check_takes_little_memory_and_what_cannot_fit_is_refused() {
+    let folder = tempfile::tempdir().expect("a folder");
+    // More than twice the memory that is allowed: the fields of the run alone would take more than 1 GB.
+    let many = CASE
+        .replace("cells = 24", "cells = 8000000")
+        .replace("thickness = 1.0", "thickness.formula = \"x + 6\"");
+    put(folder.path(), "case.toml", &many);
+    let line = format!("ulimit -v 350000; exec {PROGRAM} check case.toml");
+    let output = std::process::Command::new("sh")
+        .current_dir(folder.path())
+        .args(["-c", &line])
+        .env("RAYON_NUM_THREADS", "2")
+        .output()
+        .expect("a shell");
+    assert_eq!(output.status.code(), Some(0), "{}", told(&output));
+    let text = said(&output);
+    assert!(text.contains("mass 72.000000, 7999999 wet cells") && text.contains("GB at its peak"), "{text}");
+    for model in ["", "model = \"hadeler_kuttler\"\n"] {
+        let case =
+            format!("{model}grid.x = {{ from = 0, to = 1e6, cells = 60000000000 }}\n[time]\nsteps = 1\n");
+        let case = if model.is_empty() {
+            case + "[material]\nfriction.coulomb.mu = 0.3\n[initial]\nthickness = 1\n"
+        } else {
+            case
+        };
+        put(folder.path(), "case.toml", &case);
+        let output = granflow(folder.path(), &["run", "case.toml"]);
+        let message = told(&output);
+        assert_eq!(output.status.code(), Some(2), "{message}");
+        assert!(message.contains("grid.x.cells") && message.contains("are free"), "{message}");
+    }
 }
 
 #[test]

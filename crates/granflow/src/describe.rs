@@ -110,7 +110,7 @@ pub(crate) fn axis(name: &str, axis: &Axis) -> String {
 }
 
 /// The smallest and the largest of the values.
-pub(crate) fn range(values: &[f64]) -> (f64, f64) {
-    let both = |(low, high): (f64, f64), value: &f64| (low.min(*value), high.max(*value));
-    values.iter().fold((f64::INFINITY, f64::NEG_INFINITY), both)
+pub(crate) fn range(values: impl Iterator<Item = f64>) -> (f64, f64) {
+    let both = |(low, high): (f64, f64), value: f64| (low.min(value), high.max(value));
+    values.fold((f64::INFINITY, f64::NEG_INFINITY), both)
 }

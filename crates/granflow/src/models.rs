@@ -20,7 +20,7 @@ pub static MODELS: &[&Model] = &[
 /// The run of a checked case.
 pub(crate) fn start(run: &RunPlan, kind: Kind) -> Result<Box<dyn Run>, StartError> {
     match kind {
-        Kind::Chute(plan) => savage_hutter::run::chute::start(run, plan),
+        Kind::Chute(plan) => savage_hutter::run::chute::start(run, &plan),
         #[cfg(feature = "geo")]
         Kind::Terrain(plan) => savage_hutter::run::terrain::start(run, &plan),
         #[cfg(not(feature = "geo"))]
@@ -32,7 +32,7 @@ pub(crate) fn start(run: &RunPlan, kind: Kind) -> Result<Box<dyn Run>, StartErro
 /// What a checked case would compute.
 pub(crate) fn describe(run: &RunPlan, kind: Kind) -> Result<Vec<Line>, StartError> {
     match kind {
-        Kind::Chute(plan) => savage_hutter::run::describe::chute(run, plan),
+        Kind::Chute(plan) => savage_hutter::run::describe::chute(run, &plan),
         #[cfg(feature = "geo")]
         Kind::Terrain(plan) => savage_hutter::run::describe::terrain(run, &plan),
         #[cfg(not(feature = "geo"))]

@@ -12,12 +12,13 @@ use crate::look::Look;
 use crate::output::{Defaults, ON_A_GRID, Output};
 use crate::plan::{Ends, RunPlan};
 use crate::precision::Precision;
-use crate::quantity::Quantity;
+use crate::quantity::{Quantity, Values};
 use crate::source::Missing;
 
 mod slope;
 
-use slope::{Columns, Slope};
+pub use slope::Columns;
+use slope::Slope;
 
 /// The film of a case that says none, in the unit of the depth.
 pub const FILM: f64 = 1e-6;
@@ -30,16 +31,14 @@ pub const THRESHOLD: f64 = 1e-3;
 pub const TRICKLE: f64 = 1e-3;
 
 /// An avalanche on a chute, in plain numbers.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone)]
 pub struct Plan {
     /// The cells.
     pub grid: Grid,
     /// What happens at the low and the high edge along x and along y.
     pub sides: [[Side; 2]; 2],
-    /// Inclination zeta of the chute at the centre of every column of cells, in radians, positive downhill along +x.
-    pub zeta: Vec<f64>,
-    /// Mean curvature kappa = -d zeta/dx of every column.
-    pub kappa: Vec<f64>,
+    /// Slope and curvature of the columns of cells.
+    pub columns: Columns,
     /// Ratio of the scales of height and length, epsilon = H/L.
     pub epsilon: f64,
     /// Characteristic curvature eta = L/R.
@@ -56,7 +55,7 @@ impl Plan {
     /// Normal acceleration of a column of cells at rest, g cos(zeta).
     #[must_use]
     pub fn weight(&self, column: usize) -> f64 {
-        self.material.gravity * self.zeta[column].cos()
+        self.material.gravity * self.columns.zeta(column).cos()
     }
     /// Pressure coefficient of a column of cells, beta = epsilon k g cos(zeta): the pressure is beta h^2/2.
     #[must_use]
@@ -66,14 +65,14 @@ impl Plan {
 }
 
 /// The state at time 0 at the centres of the cells, x fastest.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone)]
 pub struct InitialState {
     /// Thickness h, not negative.
-    pub thickness: Vec<f64>,
+    pub thickness: Values,
     /// Velocity along x.
-    pub velocity_x: Vec<f64>,
+    pub velocity_x: Values,
     /// Velocity along y, 0 in one dimension.
-    pub velocity_y: Vec<f64>,
+    pub velocity_y: Values,
 }
 
 /// An avalanche in the papers' scaling, on a chute.
@@ -176,9 +175,9 @@ impl Written for Words {
         let Self { title, grid, material, initial, time, output, .. } = self;
         let scheme = &self.scheme.or(SchemeName::EnergyStable);
         let cells = Grid { x: grid.x.clone(), y: grid.y.clone() };
-        cells.check(look)?;
+        cells.check(look, STATE)?;
         let sides = grid.boundary.check(look, &cells)?;
-        let (material, Columns { zeta, kappa }) = material.check(look, &cells.x)?;
+        let (material, columns) = material.check(look, &cells.x)?;
         let stepping = scheme.check(look)?;
         if let Some(InSpace { key, .. }) = material.in_space.first() {
             let message = "a parameter that differs from place to place needs a [terrain]";
@@ -187,15 +186,14 @@ impl Written for Words {
         material.check_scheme(look, scheme.name)?;
         self.check_published(look, scheme.name)?;
         let ends = time.check(look, scheme.name, TRICKLE)?;
-        self.check_rest(look, &ends, sides[0], &zeta)?;
+        self.check_rest(look, &ends, sides[0], &columns)?;
         let written = output.check(look, &ends, &WRITTEN)?;
         let initial = initial.check(look, &cells)?;
         let run = avalanche::plan(look, title, scheme, &material, stepping, ends, written);
         let kind = Kind::Chute(Plan {
             grid: cells,
             sides,
-            zeta,
-            kappa,
+            columns,
             epsilon: self.material.epsilon.unwrap_or(1.0),
             eta: self.material.eta.unwrap_or(1.0),
             material,
@@ -230,13 +228,19 @@ impl Words {
 
 impl Words {
     /// A run that waits for rest on a periodic chute steeper than friction everywhere would never end.
-    fn check_rest(&self, look: &Look, ends: &Ends, along: [Side; 2], zeta: &[f64]) -> Result<(), CaseError> {
+    fn check_rest(
+        &self,
+        look: &Look,
+        ends: &Ends,
+        along: [Side; 2],
+        columns: &Columns,
+    ) -> Result<(), CaseError> {
         let waits = ends.until.is_some() && ends.time.is_none() && ends.steps.is_none();
         let Some(mu) = self.material.friction.slipping().filter(|_| waits && along[0] == Side::Periodic)
         else {
             return Ok(());
         };
-        let steep = |sign: f64| zeta.iter().all(|zeta| sign * zeta.tan() > mu);
+        let steep = |sign: f64| (0..self.grid.x.cells).all(|column| sign * columns.zeta(column).tan() > mu);
         if !steep(1.0) && !steep(-1.0) {
             return Ok(());
         }
@@ -288,6 +292,9 @@ impl Initial {
         })
     }
 }
+
+/// Bytes of the state of a cell while it is stepped.
+const STATE: f64 = 32.0;
 
 /// What is written where the case does not say.
 const WRITTEN: Defaults = Defaults { files: ON_A_GRID, precision: Precision::F64, threshold: THRESHOLD };

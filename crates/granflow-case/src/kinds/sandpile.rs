@@ -116,6 +116,9 @@ struct Initial {
     rolling_layer: Option<Quantity>,
 }
 
+/// Bytes that a cell of a table takes while the case is checked: measured.
+const TABLE: f64 = 80.0;
+
 impl Written for Words {
     const ABOUT: About = About {
         model: MODEL,
@@ -129,7 +132,7 @@ impl Written for Words {
 
     fn check(&self, look: &Look) -> Result<(RunPlan, Kind), CaseError> {
         let Self { title, grid, scheme, time, output, .. } = self;
-        grid.check(look)?;
+        grid.check(look, TABLE)?;
         let stepping = scheme.check(look)?;
         let ends = time.check(look)?;
         let output = output.check(look, &ends, &WRITTEN)?;

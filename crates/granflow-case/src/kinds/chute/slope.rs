@@ -58,26 +58,37 @@ impl<'de> Deserialize<'de> for Slope {
 }
 
 /// A slope that can be evaluated: zeta at a point, kappa as the mean over a cell.
-#[derive(Debug)]
+#[derive(Debug, Clone)]
 struct Curve {
     zeta: Zeta,
     kappa: Option<Formula>,
 }
 
-#[derive(Debug)]
+#[derive(Debug, Clone)]
 enum Zeta {
     Constant(f64),
     Points(Vec<(f64, f64)>),
     Formula(Formula),
 }
 
-/// Slope and curvature of every column of cells.
-#[derive(Debug, Clone, PartialEq)]
-pub(crate) struct Columns {
-    /// Inclination at the centre in radians.
-    pub zeta: Vec<f64>,
-    /// Mean curvature.
-    pub kappa: Vec<f64>,
+/// Slope and curvature of every column of cells, evaluated where they are asked for.
+#[derive(Debug, Clone)]
+pub struct Columns {
+    curve: Curve,
+    axis: Axis,
+}
+
+impl Columns {
+    /// Inclination zeta of a column of cells at its centre, in radians, positive downhill along +x.
+    #[must_use]
+    pub fn zeta(&self, column: usize) -> f64 {
+        self.curve.zeta(self.axis.centre(column))
+    }
+    /// Mean curvature kappa = -d zeta/dx of a column.
+    #[must_use]
+    pub fn kappa(&self, column: usize) -> f64 {
+        self.curve.kappa(self.axis.face(column), self.axis.face(column + 1))
+    }
 }
 
 impl Slope {
@@ -101,17 +112,15 @@ impl Slope {
             }
         }
         let curve = Curve::new(self).map_err(|fault| look.part_fault(key, fault))?;
-        let mut columns = Columns { zeta: Vec::new(), kappa: Vec::new() };
+        let columns = Columns { curve, axis: axis.clone() };
         for cell in 0..axis.cells {
-            let x = axis.centre(cell);
-            let (zeta, kappa) = (curve.zeta(x), curve.kappa(axis.face(cell), axis.face(cell + 1)));
+            let (zeta, kappa) = (columns.zeta(cell), columns.kappa(cell));
             if !fits(zeta) || !kappa.is_finite() {
+                let x = axis.centre(cell);
                 let message = format!("at x = {x} the slope is {zeta} rad and its curvature {kappa}");
                 let cure = "expected an angle between -90 deg and 90 deg and a finite curvature";
                 return Err(look.fault(key, message, cure));
             }
-            columns.zeta.push(zeta);
-            columns.kappa.push(kappa);
         }
         Ok(columns)
     }

@@ -16,7 +16,7 @@ impl Words {
         plan: &mut TablePlan<D>,
     ) -> Result<(), CaseError> {
         if table.height.is_some() {
-            plan.height = look.evaluate(&plan.nodes, "table.height", table.height.as_ref())?;
+            plan.height = look.evaluate(&plan.nodes, "table.height", table.height.as_ref())?.iter().collect();
         }
         if let Some((slope, place)) = plan.steepest(&plan.height) {
             let message = format!("the table's slope is {slope} between {place}");
@@ -25,7 +25,7 @@ impl Words {
         }
         let initial = self.initial.clone().unwrap_or_default();
         let key = "initial.standing_layer";
-        plan.standing = look.layer(&plan.nodes, key, initial.standing_layer.as_ref())?;
+        plan.standing = look.layer(&plan.nodes, key, initial.standing_layer.as_ref())?.iter().collect();
         for (node, u) in plan.standing.iter_mut().enumerate() {
             if plan.table.pinned(node) {
                 plan.clipped = plan.clipped.max(*u);
@@ -41,8 +41,8 @@ impl Words {
                         lower it: min(..., the distance to the open edge)";
             return Err(look.fault(key, message, cure));
         }
-        let mut rolling =
-            look.layer(&plan.centres, "initial.rolling_layer", initial.rolling_layer.as_ref())?;
+        let rolling = look.layer(&plan.centres, "initial.rolling_layer", initial.rolling_layer.as_ref())?;
+        let mut rolling: Vec<f64> = rolling.iter().collect();
         for (cell, v) in rolling.iter_mut().enumerate() {
             if !plan.inside(cell) {
                 *v = 0.0;

@@ -41,7 +41,7 @@ fn on<const D: usize>(run: &RunPlan, Pile { table: plan, sources }: &Pile<D>, ax
     let count = plan.table.count();
     let mut lines =
         vec![("table", format!("{count} cells, {:.6} in all, {}", count as f64 * cell, edges(plan)))];
-    let (low, high) = range(&plan.height);
+    let (low, high) = range(plan.height.iter().copied());
     if (low, high) != (0.0, 0.0) {
         lines.push(("", format!("{low} to {high} high")));
     }
@@ -51,7 +51,7 @@ fn on<const D: usize>(run: &RunPlan, Pile { table: plan, sources }: &Pile<D>, ax
     if sources.is_moving(0.0) {
         lines.push(("", "and changing in time by a formula".to_owned()));
     }
-    let [u, v] = [&plan.standing, &plan.rolling].map(|layer| range(layer).1);
+    let [u, v] = [&plan.standing, &plan.rolling].map(|layer| range(layer.iter().copied()).1);
     lines.push(("layers", format!("at the start standing up to {u}, rolling up to {v}")));
     let nodes: usize = plan.nodes.counts().iter().product();
     let size = size::<D>(run, nodes, sources.bytes());

@@ -49,7 +49,9 @@ pub(crate) struct Places {
 
 impl Places {
     fn of<const D: usize>(plan: &TablePlan<D>) -> Places {
-        let pair = |points: &Points| [points.x.clone(), points.y.clone().unwrap_or_default()];
+        let pair = |points: &Points| {
+            [points.x.to_vec(), points.y.as_ref().map(granflow_case::Places::to_vec).unwrap_or_default()]
+        };
         Places { centres: pair(&plan.centres), nodes: pair(&plan.nodes) }
     }
 }

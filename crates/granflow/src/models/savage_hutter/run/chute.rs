@@ -24,51 +24,65 @@ use granflow_model::savage_hutter::kinetic::{
 use granflow_model::scheme::Boundary;
 use std::sync::Arc;
 
-/// The run of a case on a chute.
-pub(crate) fn start(run: &RunPlan, plan: Plan) -> Result<Box<dyn Run>, StartError> {
-    if plan.grid.y.is_none() { on::<1>(run, plan) } else { on::<2>(run, plan) }
+/// Some of the cells of a chute side by side: number of the first along x and y, and how many.
+#[derive(Clone, Copy)]
+pub(crate) struct Part {
+    pub from: [usize; 2],
+    pub cells: [usize; 2],
 }
 
-fn on<const D: usize>(run: &RunPlan, plan: Plan) -> Result<Box<dyn Run>, StartError> {
+/// The run of a case on a chute.
+pub(crate) fn start(run: &RunPlan, plan: &Plan) -> Result<Box<dyn Run>, StartError> {
+    part(run, plan, Part { from: [0; 2], cells: plan.grid.cells() })
+}
+
+/// The run of a part of a chute, open where the chute goes on.
+pub(crate) fn part(run: &RunPlan, plan: &Plan, part: Part) -> Result<Box<dyn Run>, StartError> {
+    if plan.grid.y.is_none() { on::<1>(run, plan, part) } else { on::<2>(run, plan, part) }
+}
+
+fn on<const D: usize>(run: &RunPlan, plan: &Plan, part: Part) -> Result<Box<dyn Run>, StartError> {
     let mu = plan.material.mu;
     let Method { name, film } = plan.scheme;
     let Some(law) = plan.material.law_in_loops() else {
         let law = plan.material.law;
         let second = name == SchemeName::EnergyStable2;
         let scheme = if second { EnergyStable::second(law, film) } else { EnergyStable::first(law, film) };
-        return simulate::<D, _>(run, plan, scheme);
+        return simulate::<D, _>(run, plan, part, scheme);
     };
     let published = |variant: Variant| variant.with(Coulomb { mu });
     match name {
-        SchemeName::Balanced => simulate::<D, _>(run, plan, Balanced::first(law, film)),
-        SchemeName::EnergyStable => simulate::<D, _>(run, plan, EnergyStable::first(law, film)),
-        SchemeName::EnergyStable2 => simulate::<D, _>(run, plan, EnergyStable::second(law, film)),
-        SchemeName::Balanced2 => simulate::<D, _>(run, plan, Balanced::second(law, film)),
-        SchemeName::Verfahren1 => simulate::<D, _>(run, plan, published(VERFAHREN_1)),
-        SchemeName::Verfahren2 => simulate::<D, _>(run, plan, published(VERFAHREN_2)),
-        SchemeName::Verfahren3 => simulate::<D, _>(run, plan, published(VERFAHREN_3)),
-        SchemeName::Verfahren4 => simulate::<D, _>(run, plan, published(VERFAHREN_4)),
-        SchemeName::Verfahren5 => simulate::<D, _>(run, plan, published(VERFAHREN_5)),
+        SchemeName::Balanced => simulate::<D, _>(run, plan, part, Balanced::first(law, film)),
+        SchemeName::EnergyStable => simulate::<D, _>(run, plan, part, EnergyStable::first(law, film)),
+        SchemeName::EnergyStable2 => simulate::<D, _>(run, plan, part, EnergyStable::second(law, film)),
+        SchemeName::Balanced2 => simulate::<D, _>(run, plan, part, Balanced::second(law, film)),
+        SchemeName::Verfahren1 => simulate::<D, _>(run, plan, part, published(VERFAHREN_1)),
+        SchemeName::Verfahren2 => simulate::<D, _>(run, plan, part, published(VERFAHREN_2)),
+        SchemeName::Verfahren3 => simulate::<D, _>(run, plan, part, published(VERFAHREN_3)),
+        SchemeName::Verfahren4 => simulate::<D, _>(run, plan, part, published(VERFAHREN_4)),
+        SchemeName::Verfahren5 => simulate::<D, _>(run, plan, part, published(VERFAHREN_5)),
     }
 }
 
-fn simulate<const D: usize, S>(run: &RunPlan, plan: Plan, scheme: S) -> Result<Box<dyn Run>, StartError>
+fn simulate<const D: usize, S>(
+    run: &RunPlan,
+    plan: &Plan,
+    part: Part,
+    scheme: S,
+) -> Result<Box<dyn Run>, StartError>
 where
     S: Kernel<D, State = Flow<D, f64>, Ground = Chute<D, f64>> + 'static,
 {
-    let (grid, grounds, initial, film) = (grid::<D>(&plan), columns(&plan), plan.initial, plan.scheme.film);
+    let (grid, film) = (grid::<D>(plan, part), plan.scheme.film);
     fits(grid.cells.iter().product(), Simulation::<D, S>::bytes_per_cell(false))?;
-    let columns = grid.cells[0];
     let plane = Plane::of(&grid, Arc::new(ChuteDomain));
-    // Both own what they read: it is given back once the simulation is made.
-    let ground = move |index: [usize; D]| {
-        let Chute { tilt, beta, cos, curvature } = grounds[index[0]];
-        Chute { tilt: std::array::from_fn(|k| tilt[k]), beta, cos, curvature }
-    };
-    let state = move |index: [usize; D]| {
-        let n = if D > 1 { index[D - 1] * columns + index[0] } else { index[0] };
-        let u = [initial.velocity_x[n], initial.velocity_y[n]];
-        let h = initial.thickness[n];
+    let ground = |index: [usize; D]| ground_at(plan, part.from[0] + index[0]);
+    let (columns, initial) = (plan.grid.cells()[0], &plan.initial);
+    let state = |index: [usize; D]| {
+        let row = if D > 1 { part.from[1] + index[D - 1] } else { 0 };
+        let n = row * columns + part.from[0] + index[0];
+        let u = [initial.velocity_x.at(n), initial.velocity_y.at(n)];
+        let h = initial.thickness.at(n);
         Flow { h, q: std::array::from_fn(|k| h * u[k]) }
     };
     let simulation = Simulation::new(scheme, grid, step_size(run), ground, state)?;
@@ -76,29 +90,33 @@ where
     Ok(Box::new(Simulated::new(simulation, physics, plane)))
 }
 
-fn grid<const D: usize>(plan: &Plan) -> Grid<D> {
+fn grid<const D: usize>(plan: &Plan, Part { from, cells }: Part) -> Grid<D> {
     let axes = [Some(&plan.grid.x), plan.grid.y.as_ref()];
+    let whole = |k: usize| cells[k] == plan.grid.cells()[k];
     Grid {
-        cells: std::array::from_fn(|k| axes[k].map_or(1, |axis| axis.cells)),
-        origin: std::array::from_fn(|k| axes[k].map_or(0.0, |axis| axis.from)),
+        cells: std::array::from_fn(|k| cells[k]),
+        origin: std::array::from_fn(|k| {
+            axes[k].map_or(0.0, |axis| axis.from + from[k] as f64 * axis.width())
+        }),
         size: std::array::from_fn(|k| axes[k].map_or(1.0, Axis::width)),
         boundary: std::array::from_fn(|k| {
             plan.sides[k].map(|side| match side {
-                Side::Open => Boundary::Open,
-                Side::Wall => Boundary::Wall,
-                Side::Periodic => Boundary::Periodic,
+                Side::Wall if whole(k) => Boundary::Wall,
+                Side::Periodic if whole(k) => Boundary::Periodic,
+                _ => Boundary::Open,
             })
         }),
     }
 }
 
-/// The ground of every column of cells.
-fn columns(plan: &Plan) -> Vec<Chute<2, f64>> {
-    let column = |k: usize| Chute {
-        tilt: [plan.material.gravity * plan.zeta[k].sin(), 0.0],
-        beta: plan.beta(k),
-        cos: plan.weight(k),
-        curvature: plan.eta * plan.kappa[k],
-    };
-    (0..plan.zeta.len()).map(column).collect()
+/// The ground of a column of cells.
+fn ground_at<const D: usize>(plan: &Plan, column: usize) -> Chute<D, f64> {
+    let zeta = plan.columns.zeta(column);
+    let down = plan.material.gravity * zeta.sin();
+    Chute {
+        tilt: std::array::from_fn(|k| if k == 0 { down } else { 0.0 }),
+        beta: plan.beta(column),
+        cos: plan.weight(column),
+        curvature: plan.eta * plan.columns.kappa(column),
+    }
 }

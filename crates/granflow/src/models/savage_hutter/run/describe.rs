@@ -1,11 +1,11 @@
 //! What an avalanche would compute: material, bed, mass, pull.
 
-use super::chute;
+use super::chute::{self, Part};
 #[cfg(feature = "geo")]
 use super::terrain::{self, Loaded};
 use crate::StartError;
 use crate::describe::{Line, axis, case, effort, range};
-use crate::memory::Size;
+use crate::memory::{Size, fits};
 use crate::model::{At, Kind};
 use crate::run::Run;
 use granflow_case::avalanche::Material;
@@ -17,13 +17,14 @@ use granflow_case::{Axis, Frames, RunPlan, Side};
 use granflow_geo::raster::Crs;
 #[cfg(feature = "geo")]
 use granflow_geo::terrain::{Pits, Survey};
+use granflow_model::real::CompensatedSum;
 
 /// A fast avalanche \[m/s\].
 #[cfg(feature = "geo")]
 const FAST: f64 = 30.0;
 
 /// The lines about an avalanche on a chute.
-pub(crate) fn chute(run: &RunPlan, plan: OnChute) -> Result<Vec<Line>, StartError> {
+pub(crate) fn chute(run: &RunPlan, plan: &OnChute) -> Result<Vec<Line>, StartError> {
     let order = if run.scheme.ends_with("_2") && !run.scheme.starts_with("verfahren") {
         "second order"
     } else {
@@ -31,8 +32,9 @@ pub(crate) fn chute(run: &RunPlan, plan: OnChute) -> Result<Vec<Line>, StartErro
     };
     let mut lines = case(run, material(&plan.material), &format!("{order}, film {:e}, ", plan.scheme.film));
     lines.push(threshold(run, ""));
-    lines.extend(grid(&plan));
-    lines.extend(start(run, &mut *chute::start(run, plan)?, READ[0], PICTURES[0]));
+    let mass = Mass::of(plan);
+    lines.extend(grid(plan, &mass));
+    lines.extend(start(run, &at_start(run, plan, &mass)?));
     Ok(lines)
 }
 
@@ -48,49 +50,134 @@ pub(crate) fn terrain(run: &RunPlan, plan: &OnTerrain) -> Result<Vec<Line>, Star
     let loaded = terrain::load(run, plan)?;
     lines.extend(mountain(&loaded, plan.material.gravity));
     let remarks: Vec<Line> = loaded.remarks.iter().map(|one| (one.kind(), one.text().to_owned())).collect();
-    lines.extend(start(run, &mut *terrain::simulate(run, plan, loaded)?, READ[1], PICTURES[1]));
+    let mut mountain = terrain::simulate(run, plan, loaded)?;
+    lines.extend(start(run, &Start::of(run, &mut *mountain, READ, PICTURES[1], |_| true)));
     lines.extend(remarks);
     Ok(lines)
 }
 
-/// Bytes for each cell of what is read before a simulation is made: thickness and velocity of a chute, elevation of a mountain.
-const READ: [f64; 2] = [24.0, 8.0];
+/// Bytes for each cell of what is read before a simulation of a mountain is made: its elevation.
+const READ: f64 = 8.0;
 /// What pictures of a plane and of a mountain take at once \[bytes\], and numbers that figures of a line hold for each cell and
 /// frame: measured.
 const PICTURES: [f64; 2] = [20e6, 45e6];
 const PROFILES: f64 = 10.0;
 
-/// How the state at the start would move; `beside` are the bytes for each cell that set it up,
-/// `pictures` those of what is drawn.
-fn start(run: &RunPlan, start: &mut dyn Run, beside: f64, pictures: f64) -> Vec<Line> {
-    let (totals, rate) = (start.totals(), start.stepper().rate());
-    let cells: usize = start.stepper().cells().iter().product();
-    let instants = matches!(run.output.frames, Frames::Every(_) | Frames::Ends);
-    let bytes = start.bytes_per_cell(instants) as f64;
-    let plane = start.plane();
-    let line = plane.dimensions() == 1;
-    let maps = plane.model().of_kind(Kind::Map).filter(|map| map.at == At::Cells).count();
-    // Components of the state, and four maps in single precision.
-    let saved = 8.0 * start.stepper().components() as f64 + 16.0;
-    let drawn = if line { PROFILES } else { pictures };
-    let frame = plane.series().iter().map(|field| field.length).sum();
-    let size = Size {
-        cells,
-        line,
-        setup: start.stepper().bytes_per_cell(false) as f64 + beside,
-        run: bytes,
-        saved,
-        maps,
-        frame,
-        drawn,
+/// How the state at the start would move, and how large the run is.
+struct Start {
+    volume: f64,
+    wet: usize,
+    /// Largest pull by what friction holds, and the largest rate.
+    pull: f64,
+    rate: f64,
+    size: Size,
+}
+
+impl Start {
+    /// Of a run; `beside` are the bytes for each cell that set it up, `pictures` those of what is drawn. The pull is that of
+    /// the cells whose numbers are `within`.
+    fn of(
+        run: &RunPlan,
+        start: &mut dyn Run,
+        beside: f64,
+        pictures: f64,
+        within: impl Fn(usize) -> bool,
+    ) -> Start {
+        let pulls = start.stepper_mut().yield_ratios().into_iter().enumerate();
+        let pull =
+            pulls.filter(|(number, _)| within(*number)).fold(0.0, |most: f64, (_, pull)| most.max(pull));
+        let (totals, rate) = (start.totals(), start.stepper().rate());
+        let cells: usize = start.stepper().cells().iter().product();
+        let instants = matches!(run.output.frames, Frames::Every(_) | Frames::Ends);
+        let plane = start.plane();
+        let line = plane.dimensions() == 1;
+        let size = Size {
+            cells,
+            line,
+            setup: start.stepper().bytes_per_cell(false) as f64 + beside,
+            run: start.bytes_per_cell(instants) as f64,
+            // Components of the state, and four maps in single precision.
+            saved: 8.0 * start.stepper().components() as f64 + 16.0,
+            maps: plane.model().of_kind(Kind::Map).filter(|map| map.at == At::Cells).count(),
+            frame: plane.series().iter().map(|field| field.length).sum(),
+            drawn: if line { PROFILES } else { pictures },
+        };
+        Start { volume: totals.volume, wet: totals.wet, pull, rate, size }
+    }
+}
+
+/// Cells of a chute that are looked at together, so that a look takes little memory however many there are.
+const TOGETHER: usize = 1 << 18;
+
+/// The start of a run on a chute; of a large one part by part, each with a cell more on every side. At a wall or a periodic edge
+/// the pull is then that at an open one.
+fn at_start(run: &RunPlan, plan: &OnChute, mass: &Mass) -> Result<Start, StartError> {
+    let [columns, rows] = plan.grid.cells();
+    let cells = columns * rows;
+    if cells <= TOGETHER {
+        return Ok(Start::of(run, &mut *chute::start(run, plan)?, 0.0, PICTURES[0], |_| true));
+    }
+    let look = |part: Part, within: &dyn Fn(usize) -> bool| -> Result<Start, StartError> {
+        Ok(Start::of(run, &mut *chute::part(run, plan, part)?, 0.0, PICTURES[0], within))
     };
-    let pull = start.stepper_mut().yield_ratios().into_iter().fold(0.0, f64::max);
-    let verdict = if pull > 1.0 { "it will start" } else { "it rests" };
+    let few = look(Part { from: [0; 2], cells: [columns.min(3), rows.min(3)] }, &|_| true)?.size;
+    fits(cells, few.setup as usize)?;
+    let mut whole = Start {
+        volume: mass.volume,
+        wet: mass.wet,
+        pull: 0.0,
+        rate: 0.0,
+        size: Size { cells, frame: few.frame / few.cells * cells, ..few },
+    };
+    let across = columns.min(TOGETHER);
+    let along = (TOGETHER / across).max(1);
+    for first in (0..rows).step_by(along).flat_map(|y| (0..columns).step_by(across).map(move |x| [x, y])) {
+        let from = first.map(|cell| cell.saturating_sub(1));
+        let to = [(first[0] + across + 1).min(columns), (first[1] + along + 1).min(rows)];
+        let part = Part { from, cells: [to[0] - from[0], to[1] - from[1]] };
+        let own = |number: usize| {
+            let [x, y] = [from[0] + number % part.cells[0], from[1] + number / part.cells[0]];
+            (first[0]..first[0] + across).contains(&x) && (first[1]..first[1] + along).contains(&y)
+        };
+        let one = look(part, &own)?;
+        (whole.pull, whole.rate) = (whole.pull.max(one.pull), whole.rate.max(one.rate));
+    }
+    Ok(whole)
+}
+
+/// What lies on a chute at the start.
+struct Mass {
+    /// The thinnest and the thickest layer.
+    range: [f64; 2],
+    volume: f64,
+    /// Cells with a depth, and those with more than a film.
+    wet: usize,
+    thick: usize,
+}
+
+impl Mass {
+    fn of(plan: &OnChute) -> Mass {
+        let (mut mass, mut sum) =
+            (Mass { range: [f64::INFINITY, 0.0], volume: 0.0, wet: 0, thick: 0 }, CompensatedSum::default());
+        for h in plan.initial.thickness.iter() {
+            mass.range = [mass.range[0].min(h), mass.range[1].max(h)];
+            mass.wet += usize::from(h > 0.0);
+            mass.thick += usize::from(h > plan.scheme.film);
+            sum.add(h);
+        }
+        let cell = plan.grid.x.width() * plan.grid.y.as_ref().map_or(1.0, Axis::width);
+        Mass { volume: sum.value() * cell, ..mass }
+    }
+}
+
+fn start(run: &RunPlan, start: &Start) -> Vec<Line> {
+    let Start { volume, wet, pull, rate, size } = start;
+    let verdict = if *pull > 1.0 { "it will start" } else { "it rests" };
     let mut lines = vec![
-        ("mass", format!("{:.6} in {} cells", totals.volume, totals.wet)),
+        ("mass", format!("{volume:.6} in {wet} cells")),
         ("pull", format!("at most {pull:.6} of what friction holds: {verdict}")),
     ];
-    lines.extend(effort(run, &size, rate));
+    lines.extend(effort(run, size, *rate));
     lines
 }
 
@@ -109,25 +196,21 @@ fn material(material: &Material) -> Vec<Line> {
 }
 
 /// The cells of a chute, its slope, and the mass on it.
-fn grid(plan: &OnChute) -> Vec<Line> {
+fn grid(plan: &OnChute, mass: &Mass) -> Vec<Line> {
     let with_sides = |name: &str, along: &Axis, sides: [Side; 2]| {
         let [low, high] = sides.map(|side| format!("{side:?}").to_lowercase());
         format!("{}, {low} | {high}", axis(name, along))
     };
     let mut lines = vec![("grid", with_sides("x", &plan.grid.x, plan.sides[0]))];
     lines.extend(plan.grid.y.as_ref().map(|y| ("", with_sides("y", y, plan.sides[1]))));
-    let (low, high) = range(&plan.zeta);
+    let (low, high) = range((0..plan.grid.x.cells).map(|column| plan.columns.zeta(column)));
     lines.push(if low < high {
         ("slope", format!("{:.4} to {:.4} deg", low.to_degrees(), high.to_degrees()))
     } else {
         ("slope", format!("{:.4} deg", low.to_degrees()))
     });
-    let thickness = &plan.initial.thickness;
-    let (low, high) = range(thickness);
-    let area = plan.grid.x.width() * plan.grid.y.as_ref().map_or(1.0, Axis::width);
-    let wet = thickness.iter().filter(|h| **h > plan.scheme.film).count();
-    let mass = thickness.iter().sum::<f64>() * area;
-    lines.push(("thickness", format!("{low} to {high}, mass {mass:.6}, {wet} wet cells")));
+    let Mass { range: [low, high], volume, thick, .. } = mass;
+    lines.push(("thickness", format!("{low} to {high}, mass {volume:.6}, {thick} wet cells")));
     lines
 }
 
