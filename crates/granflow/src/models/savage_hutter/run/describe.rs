@@ -14,7 +14,6 @@ use granflow_case::chute::Plan as OnChute;
 use granflow_case::terrain::{Plan as OnTerrain, TerrainScheme};
 use granflow_case::{Axis, Frames, RunPlan, Side};
 #[cfg(feature = "geo")]
-use granflow_geo::raster::Crs;
 #[cfg(feature = "geo")]
 use granflow_geo::terrain::{Pits, Survey};
 use granflow_model::real::CompensatedSum;
@@ -188,9 +187,16 @@ fn threshold(run: &RunPlan, unit: &str) -> Line {
 }
 
 fn material(material: &Material) -> Vec<Line> {
-    let Material { friction, mu, pressure_coefficient, gravity, density, .. } = material;
+    let Material { friction, mu, in_space, pressure_coefficient, gravity, density, .. } = material;
+    let mu = match in_space.first() {
+        Some(first) if first.index == 0 => {
+            let name = first.key.rsplit('.').next().unwrap_or_default();
+            format!("{name} differs from place to place")
+        }
+        _ => format!("mu = {mu:.6} ({:.3} deg)", mu.atan().to_degrees()),
+    };
     vec![
-        ("friction", format!("{friction}, mu = {mu:.6} ({:.3} deg)", mu.atan().to_degrees())),
+        ("friction", format!("{friction}, {mu}")),
         ("material", format!("k = {pressure_coefficient:.6}, gravity {gravity}, density {density}")),
     ]
 }
@@ -223,11 +229,10 @@ fn mountain(loaded: &Loaded, gravity: f64) -> Vec<Line> {
     let (all, with) = (bed.values.len(), bed.values.len() - missing);
     let steep = loaded.terrain.steepness(60_f64.to_radians());
     let size = format!("{} x {} cells of {} m", bed.columns, bed.rows, bed.cell);
-    let system = |crs: Option<String>| crs.unwrap_or_else(|| "no coordinate reference system".to_owned());
     let [x, y] = step_at;
     let mut lines = vec![
         ("terrain", format!("{size}, {missing} without elevation ({:.1} %)", share(*missing, all))),
-        ("", system(bed.crs.as_ref().map(Crs::describe))),
+        ("", terrain::described(bed.crs.as_ref())),
         ("", format!("{low:.1} to {high:.1} m, largest step between cells {step:.1} m at ({x:.1}, {y:.1})")),
         (
             "steep",
@@ -242,9 +247,16 @@ fn mountain(loaded: &Loaded, gravity: f64) -> Vec<Line> {
     ];
     let parts = loaded.parts.iter().zip(std::iter::once("release").chain(std::iter::repeat("")));
     lines.extend(parts.map(|((name, crs, volume), title)| {
-        let crs = if name == "cap" { String::new() } else { format!(", {}", system(crs.clone())) };
+        let crs = crs.as_ref().map(|crs| format!(", {crs}")).unwrap_or_default();
         (title, format!("{name}{crs}, {volume:.1} m3"))
     }));
+    lines.extend(
+        loaded
+            .parameters
+            .ranges
+            .iter()
+            .map(|(key, [least, largest])| ("parameter", format!("{key} from {least} to {largest}"))),
+    );
     let released = loaded.parts.iter().map(|(_, _, volume)| volume).sum();
     lines.push(("pits", pits(&Pits::of(bed), released)));
     lines

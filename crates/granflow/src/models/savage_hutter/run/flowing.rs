@@ -137,7 +137,8 @@ where
     }
     fn numbers(&self, simulation: &Simulation<D, S>, _drift: &[f64], record: &Record) -> Numbers {
         let totals = simulation.totals();
-        let share = if record.initial == 0.0 { 0.0 } else { totals.film / record.initial };
+        let whole = record.initial + simulation.poured();
+        let share = if whole == 0.0 { 0.0 } else { totals.film / whole };
         let mut numbers = vec![
             ("film".to_owned(), self.film),
             ("film_share".to_owned(), share),

@@ -36,7 +36,7 @@ pub(super) struct Loaded {
     pub terrain: Terrain,
     /// Released volume per plan area H \[m\].
     pub release: Sparse,
-    /// Each release by the name of its file or kind, the system that its file says, and its volume \[m^3\].
+    /// Each release and inflow: the name of its file or kind and when it starts, the system of its file, and its volume \[m^3\].
     pub parts: Vec<(String, Option<String>, f64)>,
     /// What was decided while reading, and what looks wrong.
     pub remarks: Vec<Remark>,
@@ -246,13 +246,13 @@ fn add(loaded: &mut Loaded, one: &Release, crs: Option<&Crs>) -> Result<(), Star
             };
             let layer = release::Layer::read(path)?;
             loaded.remarks.extend(layer.notes(bed));
-            let system = layer.crs().map(Crs::describe);
+            let system = Some(described(layer.crs()));
             (path.display().to_string(), system, layer.thickness(&thickness, bed)?)
         }
         Extent::Raster(path) => {
             let reading = Reading::of(path, bed.crs.as_ref().or(crs))?;
             loaded.remarks.extend(reading.notes);
-            let system = reading.raster.crs.as_ref().map(Crs::describe);
+            let system = Some(described(reading.raster.crs.as_ref()));
             (path.display().to_string(), system, release::carried(path, &reading.raster, bed)?)
         }
         Extent::Cap(cap) => {
@@ -266,6 +266,11 @@ fn add(loaded: &mut Loaded, one: &Release, crs: Option<&Crs>) -> Result<(), Star
     };
     let volume = release::per_plan_area(cells, &loaded.terrain, measured);
     let total = volume.iter().map(|(_, height)| height).sum::<f64>() * bed.cell * bed.cell;
+    let name = match one.starts {
+        Starts::At(0.0) => name,
+        Starts::At(time) => format!("{name} at {time} s"),
+        Starts::Hit => format!("{name} when hit"),
+    };
     loaded.parts.push((name, system, total));
     if one.starts == Starts::At(0.0) {
         loaded.release = std::mem::take(&mut loaded.release).plus(volume);
@@ -275,6 +280,11 @@ fn add(loaded: &mut Loaded, one: &Release, crs: Option<&Crs>) -> Result<(), Star
         loaded.supply.late.push(Late { starts: one.starts, cells, came: false });
     }
     Ok(())
+}
+
+/// A system in words.
+pub(super) fn described(crs: Option<&Crs>) -> String {
+    crs.map_or("no coordinate reference system".to_owned(), Crs::describe)
 }
 
 /// The cells of an inflow, each with its share and the direction in which the mass moves there.
