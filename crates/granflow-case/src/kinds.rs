@@ -23,6 +23,7 @@ macro_rules! kinds {
     ($($(#[$doc:meta])* $kind:ident: $folder:ident),+ $(,)?) => {
         /// The numbers of a checked case that only its kind has.
         #[derive(Debug)]
+        #[allow(clippy::large_enum_variant, reason = "a run has one")]
         pub enum Kind {
             $($(#[$doc])* $kind($folder::Plan),)+
         }

@@ -1,6 +1,6 @@
 use super::*;
 use crate::chute::InitialState;
-use granflow_model::savage_hutter::friction::Law;
+use granflow_model::savage_hutter::friction::AnyLaw;
 use std::path::Path;
 
 mod resolved;

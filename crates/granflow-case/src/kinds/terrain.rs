@@ -128,14 +128,6 @@ impl Written for Words {
     fn check(&self, look: &Look) -> Result<(RunPlan, Kind), CaseError> {
         let Self { title, terrain, material, release, inflow, time, output, .. } = self;
         let scheme = &self.scheme.or(SchemeName::EnergyStable2);
-        let first = release.iter().any(|one| one.when.is_none());
-        if !first && inflow.is_empty() {
-            return Err(look.fault(
-                "release",
-                "a case with [terrain] needs a [[release]] that starts by itself, or an [[inflow]]",
-                "add [[release]] with polygons, raster or cap",
-            ));
-        }
         let material = material.check(look)?;
         let stepping = scheme.check(look)?;
         material.check_scheme(look, scheme.name)?;
@@ -151,6 +143,14 @@ impl Written for Words {
         let inflows = inflows
             .map(|(index, one)| one.check(look, &format!("inflow[{index}]")))
             .collect::<Result<_, _>>()?;
+        let first = release.iter().any(|one| one.when.is_none());
+        if !first && inflow.is_empty() {
+            return Err(look.fault(
+                "release",
+                "a case with [terrain] needs a [[release]] that starts by itself, or an [[inflow]]",
+                "add [[release]] with polygons, raster or cap",
+            ));
+        }
         look.file("terrain.dem", &terrain.dem)?;
         for (index, one) in release.iter().enumerate() {
             one.check_files(look, &format!("release[{index}]"))?;

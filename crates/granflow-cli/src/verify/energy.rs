@@ -119,12 +119,12 @@ fn laws(dice: &mut Dice) -> AnyLaw {
 
 /// The law as the loops of all schemes have it, for half of those that they have.
 fn in_loops(law: AnyLaw, seed: u64) -> Option<Law> {
-    law.in_loops().filter(|_| seed % 2 == 0)
+    law.in_loops().filter(|_| seed.is_multiple_of(2))
 }
 
-/// Parameters of a law in a cell: its first one, mu or the bond, from a third to three times that of the others.
+/// Parameters of a law in a cell: its first one, mu or the bond, from a third of the usual one up to it.
 fn elsewhere(parameters: Parameters<f64>, dice: &mut Dice) -> Parameters<f64> {
-    parameters.with(0, parameters.get(0) * 3.0_f64.powf(dice.between(-1.0, 1.0)))
+    parameters.with(0, parameters.get(0) * dice.between(1.0 / 3.0, 1.0))
 }
 
 /// The scheme of first or second order.

@@ -115,8 +115,8 @@ fn a_rough_zone_stops_what_enters_it() {
         (0..all.len()).filter(beyond).map(|k| all[k]).sum::<f64>() / all.iter().sum::<f64>()
     };
     let (free, stopped) = (volume("coulomb = { mu = 0.1 }", 1225.0), volume(mu, 1225.0));
-    assert!(free > 0.5, "without the zone {free} of the volume is beyond its first metres");
-    assert!(stopped < 1e-3, "{stopped} of the volume passed 25 m of mu = 3");
+    assert!(free > 0.2, "without the zone {free} of the volume is beyond its first metres");
+    assert!(stopped < 0.1 * free, "{stopped} of the volume passed 25 m of mu = 3, {free} without");
 }
 
 #[test]

@@ -84,8 +84,8 @@ fn a_hydrograph_brings_its_integral_whatever_the_steps() {
         run.to_rest(400.0).unwrap();
         let poured = run.stepper().poured();
         assert!((poured / exact - 1.0).abs() < 1e-13, "{over}{rest}: {poured} instead of {exact}");
-        let volume = run.totals().volume;
-        assert!((volume / exact - 1.0).abs() < 1e-12, "{over}{rest}: {volume} of {exact} lies");
+        let volume = run.totals().volume + run.stepper().outflow().iter().sum::<f64>();
+        assert!((volume / exact - 1.0).abs() < 1e-12, "{over}{rest}: {volume} of {exact} is left");
         assert!(run.at_rest() && run.time() > 9.1);
     }
 }
@@ -121,13 +121,14 @@ fn an_inflow_brings_the_momentum_of_its_speed() {
     );
 }
 
-/// Voellmy on a plane: q = h v and v^2 = xi h (sin - mu cos).
+/// Voellmy on a plane: q = h v and v^2 = xi h (sin - mu cos). Slow enough (Fr^2 = xi (tan - mu)/g = 1.5) to make no roll waves, which grow
+/// from Fr = 2 on.
 #[test]
 fn a_steady_inflow_reaches_the_uniform_depth_of_its_discharge() {
     let folder = tempfile::tempdir().unwrap();
     let slope = 0.4_f64;
     write_grid(&folder.path().join("dem.asc"), [60, 41], |x, _| 300.0 - slope * x);
-    let (mu, xi, width) = (0.2, 800.0, 205.0);
+    let (mu, xi, width) = (0.3, 150.0, 205.0);
     let [sin, cos] = [slope, 1.0].map(|leg| leg / 1.0_f64.hypot(slope));
     let discharge = 410.0;
     let per_width: f64 = discharge / width;
@@ -155,8 +156,10 @@ fn a_steady_inflow_reaches_the_uniform_depth_of_its_discharge() {
 #[test]
 fn a_late_release_flows_as_one_at_the_start() {
     let folder = valley();
-    let mut early = start(folder.path(), FIRST, "end = 50.0");
-    let mut late = start(folder.path(), &format!("{FIRST}at = 3.0\n"), "end = 50.0");
+    // Both runs have something to come, and so no bound on the head from what lies there at the start.
+    let aside = "[[release]]\ncap = { height = 1.0, centre = [40.0, 8.0], radius = 5.0 }\nat = 1e6\n";
+    let mut early = start(folder.path(), &format!("{FIRST}{aside}"), "end = 50.0");
+    let mut late = start(folder.path(), &format!("{aside}{FIRST}at = 3.0\n"), "end = 50.0");
     late.step(1e9).unwrap();
     assert_eq!((late.time(), late.totals().volume, late.at_rest()), (3.0, 0.0, false));
     steps(&mut *early, 60);
@@ -246,7 +249,10 @@ fn what_is_wrong_with_a_supply_is_named_with_a_cure() {
         (format!("{FIRST}when = \"hit\"\n"), vec!["starts by itself"]),
         (format!("[[inflow]]\n{table}\n"), vec!["exactly one of line, polygons"]),
         (format!("[[inflow]]\nline = [[10, 20]]\n{table}\n"), vec!["two points"]),
-        (format!("[[inflow]]\nline = [[10, 20], [900, 20]]\n{table}\n"), vec!["no elevation", "(350"]),
+        (
+            format!("[[inflow]]\nline = [[10, 20], [900, 20]]\n{table}\n"),
+            vec!["no elevation", "the line of an inflow"],
+        ),
         (
             "[[inflow]]\nline = [[10, 20], [10, 40]]\nhydrograph = \"q.csv\"\n".to_owned(),
             vec!["q.csv", "line 3", "many"],

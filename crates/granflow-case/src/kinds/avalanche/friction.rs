@@ -3,18 +3,15 @@
 use std::f64::consts::FRAC_PI_2;
 
 use granflow_model::savage_hutter::friction::{AnyLaw, Law};
-use granflow_model::scheme::Components;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 mod laws;
 mod parameter;
 
-use laws::{
-    Bingham, Cohesion, Coulomb, HerschelBulkley, MuI, PouliquenForterre, Quadratic, Samosat, Voellmy,
-};
 use parameter::{Number, Parameter};
 
+pub(crate) use laws::Friction;
 pub use parameter::{ByElevation, InSpace, Place, Range};
 
 use super::scheme::SchemeName;
@@ -52,31 +49,6 @@ pub(crate) enum EarthPressure {
     Kaland,
 }
 
-/// The friction law: the acceleration that resists motion, per normal load N+ and thickness h.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(rename_all = "snake_case")]
-pub(crate) enum Friction {
-    /// Coulomb: mu N+.
-    Coulomb(Coulomb),
-    /// Voellmy: mu N+ + g |V|^2/(xi h).
-    Voellmy(Voellmy),
-    /// Coulomb with cohesion: mu N+ + tau0/(rho h).
-    Cohesion(Cohesion),
-    /// samosAT, the default law of AvaFrame: [tau0 + mu sigma (1 + rs0/(rs0 + Rs)) + rho |V|^2/(ln(h/r)/kappa + b)^2]/(rho h).
-    Samosat(Samosat),
-    /// Pouliquen & Forterre (2002): starts above one thickness, stops below a smaller one.
-    #[serde(rename = "pouliquen", alias = "pouliquen_forterre")]
-    PouliquenForterre(PouliquenForterre),
-    /// mu(I), averaged over the depth (Gray & Edwards 2014).
-    MuI(MuI),
-    /// Bingham: a yield stress and a viscosity.
-    Bingham(Bingham),
-    /// Herschel-Bulkley: tau0 + k (rate of shear)^n.
-    HerschelBulkley(HerschelBulkley),
-    /// The quadratic law of mud and debris (O'Brien, Julien & Fullerton 1993).
-    Quadratic(Quadratic),
-}
-
 impl Material {
     /// The law with one set of parameters for all cells, as the loops of all schemes have it; none for another one.
     #[must_use]
@@ -111,21 +83,6 @@ impl EarthPressure {
 }
 
 impl Friction {
-    /// The name a case file writes.
-    pub fn name(&self) -> &'static str {
-        match self {
-            Self::Coulomb(_) => "coulomb",
-            Self::Voellmy(_) => "voellmy",
-            Self::Cohesion(_) => "cohesion",
-            Self::Samosat(_) => "samosat",
-            Self::PouliquenForterre(_) => "pouliquen",
-            Self::MuI(_) => "mu_i",
-            Self::Bingham(_) => "bingham",
-            Self::HerschelBulkley(_) => "herschel_bulkley",
-            Self::Quadratic(_) => "quadratic",
-        }
-    }
-
     /// The law and what it acts on, in plain numbers.
     pub fn material(
         &self,
@@ -147,7 +104,15 @@ impl Friction {
             match value.place(look, &key, range)? {
                 Some(place) => in_space.push(InSpace { index, key, place, range, per }),
                 // Compared with a first parameter that differs from place to place once that is read.
-                None if in_space.first().is_some_and(|first| first.index == 0) && range.of_first() => {}
+                None if in_space.first().is_some_and(|first| first.index == 0) && range.of_first() => {
+                    in_space.push(InSpace {
+                        index,
+                        key,
+                        place: Place::Everywhere(value.usual()),
+                        range,
+                        per,
+                    });
+                }
                 None => look.number(&key, value.usual(), |v| range.fits(v, first), &range.allowed())?,
             }
             of_law.push(value.usual() / per);
@@ -157,62 +122,8 @@ impl Friction {
         Ok(Material { friction: self.name(), mu, law, in_space, pressure_coefficient, gravity, density })
     }
 
-    /// mu of a law that holds no layer, however thin, on a bed steeper than mu; of a law without such a bound none.
-    pub fn slipping(&self) -> Option<f64> {
-        match self {
-            Self::Coulomb(Coulomb { angle, mu }) | Self::Voellmy(Voellmy { angle, mu, .. }) => {
-                angle.map(|angle| angle.radians().tan()).or(mu.as_ref().map(Parameter::usual))
-            }
-            _ => None,
-        }
-    }
-
-    /// Does the friction grow with the load, by the first number?
-    fn has_mu(&self) -> bool {
-        !matches!(self, Self::Bingham(_) | Self::HerschelBulkley(_) | Self::Quadratic(_))
-    }
-
-    /// The numbers of the law in the order in which the model has them.
-    fn numbers(&self, look: &Look, gravity: f64, density: f64) -> Result<Vec<Number<'_>>, CaseError> {
-        Ok(match self {
-            Self::Coulomb(Coulomb { angle, mu }) => vec![self.coefficient(look, *angle, mu.as_ref())?],
-            Self::Voellmy(Voellmy { angle, mu, xi }) => vec![
-                self.coefficient(look, *angle, mu.as_ref())?,
-                Number::of("xi", xi, Range::Positive),
-                Number::fixed(gravity),
-            ],
-            Self::Cohesion(Cohesion { angle, mu, tau0 }) => vec![
-                self.coefficient(look, *angle, mu.as_ref())?,
-                Number::of("tau0", tau0, Range::NotNegative).per(density),
-            ],
-            Self::Samosat(law) => law.numbers(density),
-            Self::PouliquenForterre(law) => law.numbers(),
-            Self::MuI(law) => law.numbers(),
-            Self::Bingham(law) => law.numbers(density),
-            Self::HerschelBulkley(law) => law.numbers(density),
-            Self::Quadratic(law) => law.numbers(gravity, density),
-        })
-    }
-
-    /// The law of these numbers.
-    fn law(&self, numbers: &[f64]) -> AnyLaw {
-        fn of<L: Components<f64>>(numbers: &[f64]) -> L {
-            L::load(|k| numbers[k])
-        }
-        match self {
-            Self::Coulomb(_) => AnyLaw::Coulomb(of(numbers)),
-            Self::Voellmy(_) => AnyLaw::Voellmy(of(numbers)),
-            Self::Cohesion(_) => AnyLaw::Cohesion(of(numbers)),
-            Self::Samosat(_) => AnyLaw::SamosAt(of(numbers)),
-            Self::PouliquenForterre(_) => AnyLaw::PouliquenForterre(of(numbers)),
-            Self::MuI(_) => AnyLaw::MuI(of(numbers)),
-            Self::Bingham(_) | Self::HerschelBulkley(_) => AnyLaw::HerschelBulkley(of(numbers)),
-            Self::Quadratic(_) => AnyLaw::Quadratic(of(numbers)),
-        }
-    }
-
     /// mu from exactly one of the two ways to write it.
-    fn coefficient<'a>(
+    pub(super) fn coefficient<'a>(
         &'a self,
         look: &Look,
         angle: Option<Angle>,

@@ -1,10 +1,110 @@
 //! The friction laws as a case writes them.
 
+use granflow_model::savage_hutter::friction::AnyLaw;
+use granflow_model::scheme::Components;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::parameter::{Number, Parameter, Range};
+use crate::fault::CaseError;
+use crate::look::Look;
 use crate::units::Angle;
+
+/// The friction law: the acceleration that resists motion, per normal load N+ and thickness h.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub(crate) enum Friction {
+    /// Coulomb: mu N+.
+    Coulomb(Coulomb),
+    /// Voellmy: mu N+ + g |V|^2/(xi h).
+    Voellmy(Voellmy),
+    /// Coulomb with cohesion: mu N+ + tau0/(rho h).
+    Cohesion(Cohesion),
+    /// samosAT, the default law of AvaFrame: [tau0 + mu sigma (1 + rs0/(rs0 + Rs)) + rho |V|^2/(ln(h/r)/kappa + b)^2]/(rho h).
+    Samosat(Samosat),
+    /// Pouliquen & Forterre (2002): starts above one thickness, stops below a smaller one.
+    #[serde(rename = "pouliquen", alias = "pouliquen_forterre")]
+    PouliquenForterre(PouliquenForterre),
+    /// mu(I), averaged over the depth (Gray & Edwards 2014).
+    MuI(MuI),
+    /// Bingham: a yield stress and a viscosity.
+    Bingham(Bingham),
+    /// Herschel-Bulkley: tau0 + k (rate of shear)^n.
+    HerschelBulkley(HerschelBulkley),
+    /// The quadratic law of mud and debris (O'Brien, Julien & Fullerton 1993).
+    Quadratic(Quadratic),
+}
+
+impl Friction {
+    /// The name a case file writes.
+    pub fn name(&self) -> &'static str {
+        match self {
+            Self::Coulomb(_) => "coulomb",
+            Self::Voellmy(_) => "voellmy",
+            Self::Cohesion(_) => "cohesion",
+            Self::Samosat(_) => "samosat",
+            Self::PouliquenForterre(_) => "pouliquen",
+            Self::MuI(_) => "mu_i",
+            Self::Bingham(_) => "bingham",
+            Self::HerschelBulkley(_) => "herschel_bulkley",
+            Self::Quadratic(_) => "quadratic",
+        }
+    }
+
+    /// mu of a law that holds no layer, however thin, on a bed steeper than mu; of a law without such a bound none.
+    pub fn slipping(&self) -> Option<f64> {
+        match self {
+            Self::Coulomb(Coulomb { angle, mu }) | Self::Voellmy(Voellmy { angle, mu, .. }) => {
+                angle.map(|angle| angle.radians().tan()).or(mu.as_ref().map(Parameter::usual))
+            }
+            _ => None,
+        }
+    }
+
+    /// Does the friction grow with the load, by the first number?
+    pub fn has_mu(&self) -> bool {
+        !matches!(self, Self::Bingham(_) | Self::HerschelBulkley(_) | Self::Quadratic(_))
+    }
+
+    /// The numbers of the law in the order in which the model has them.
+    pub fn numbers(&self, look: &Look, gravity: f64, density: f64) -> Result<Vec<Number<'_>>, CaseError> {
+        Ok(match self {
+            Self::Coulomb(Coulomb { angle, mu }) => vec![self.coefficient(look, *angle, mu.as_ref())?],
+            Self::Voellmy(Voellmy { angle, mu, xi }) => vec![
+                self.coefficient(look, *angle, mu.as_ref())?,
+                Number::of("xi", xi, Range::Positive),
+                Number::fixed(gravity),
+            ],
+            Self::Cohesion(Cohesion { angle, mu, tau0 }) => vec![
+                self.coefficient(look, *angle, mu.as_ref())?,
+                Number::of("tau0", tau0, Range::NotNegative).per(density),
+            ],
+            Self::Samosat(law) => law.numbers(density),
+            Self::PouliquenForterre(law) => law.numbers(),
+            Self::MuI(law) => law.numbers(),
+            Self::Bingham(law) => law.numbers(density),
+            Self::HerschelBulkley(law) => law.numbers(density),
+            Self::Quadratic(law) => law.numbers(gravity, density),
+        })
+    }
+
+    /// The law of these numbers.
+    pub fn law(&self, numbers: &[f64]) -> AnyLaw {
+        fn of<L: Components<f64>>(numbers: &[f64]) -> L {
+            L::load(|k| numbers[k])
+        }
+        match self {
+            Self::Coulomb(_) => AnyLaw::Coulomb(of(numbers)),
+            Self::Voellmy(_) => AnyLaw::Voellmy(of(numbers)),
+            Self::Cohesion(_) => AnyLaw::Cohesion(of(numbers)),
+            Self::Samosat(_) => AnyLaw::SamosAt(of(numbers)),
+            Self::PouliquenForterre(_) => AnyLaw::PouliquenForterre(of(numbers)),
+            Self::MuI(_) => AnyLaw::MuI(of(numbers)),
+            Self::Bingham(_) | Self::HerschelBulkley(_) => AnyLaw::HerschelBulkley(of(numbers)),
+            Self::Quadratic(_) => AnyLaw::Quadratic(of(numbers)),
+        }
+    }
+}
 
 /// Pouliquen & Forterre's law; its values for glass beads of 0.5 mm are mu1 = 0.384, mu2 = 0.594, mu3 = 0.408, length = 6.5e-4.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -173,7 +273,8 @@ impl Default for Samosat {
     }
 }
 
-/// The numbers of a law in the order in which the model has them; a stress is divided by the density, for the model has accelerations.
+// The numbers of each law in the order in which the model has them; a stress is divided by the density, for the model has accelerations.
+
 impl PouliquenForterre {
     pub fn numbers(&self) -> Vec<Number<'_>> {
         vec![

@@ -60,6 +60,8 @@ pub enum Place {
     Polygons(PathBuf, String, Option<f64>),
     /// Classes by elevation.
     ByElevation(ByElevation),
+    /// One number, to be compared with another parameter that differs.
+    Everywhere(f64),
 }
 
 /// A parameter that differs from place to place.

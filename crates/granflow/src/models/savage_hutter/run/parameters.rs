@@ -89,6 +89,7 @@ fn values(
         Place::ByElevation(classes) => {
             return Ok(bed.values.iter().map(|level| classes.at(*level)).collect());
         }
+        Place::Everywhere(value) => return Ok(vec![*value; bed.values.len()]),
     };
     if let Some(elsewhere) = elsewhere {
         values.iter_mut().filter(|value| value.is_nan()).for_each(|value| *value = elsewhere);
@@ -101,7 +102,7 @@ fn fault(run: &RunPlan, parameter: &InSpace, bed: &Raster, cell: usize, value: f
     let InSpace { key, place, range, .. } = parameter;
     let file = match place {
         Place::Raster(path, _) | Place::Polygons(path, _, _) => format!("{}: ", path.display()),
-        Place::ByElevation(_) => String::new(),
+        Place::ByElevation(_) | Place::Everywhere(_) => String::new(),
     };
     let [column, row] = bed.place(cell);
     let at = format!("at ({}, {})", bed.x(column), bed.y(row));
