@@ -7,6 +7,7 @@ import subprocess
 import sys
 
 from environment import AVAFRAME, Refusal, enter, fresh_folder, guarded
+from locate import program
 
 SAMOSAT = {"samosat": ("samosAT", 0.155), "samosat_medium": ("samosATMedium", 0.17), "samosat_small": ("samosATSmall", 0.22)}
 LAWS = [*SAMOSAT, "coulomb", "voellmy"]
@@ -46,6 +47,7 @@ def arguments():
     parser.add_argument("--scheme", action="append", help="of granflow, may be repeated; default: energy_stable_2, energy_stable")
     parser.add_argument("--mu", type=float, default=0.4, help="Coulomb friction (default 0.4)")
     parser.add_argument("--pressure", action="append", type=float, help="peak pressure [kPa] that bounds an area; default: 1, 3, 5")
+    parser.add_argument("--thickness", action="append", type=float, help="peak thickness [m] that bounds an area; default: 0.1")
     parser.add_argument("--until", choices=["energy", "rest"], default="energy", help="how granflow ends (default energy)")
     parser.add_argument("--seed", action="append", type=int, help="of com1DFA's particles; the first is the reference; default: 12345, 1")
     parser.add_argument("--reference", type=pathlib.Path, help="folder with rasters of a finished com1DFA run")
@@ -58,14 +60,14 @@ def arguments():
     parser.add_argument("--venv", help="environment for AvaFrame; default: validation/venv-avaframe, made where it is missing")
     chosen = parser.parse_args()
     defaults = {"law": ["samosat", "coulomb", "voellmy"], "cell": [5.0], "scheme": ["energy_stable_2", "energy_stable"],
-                "pressure": [1.0, 3.0, 5.0], "seed": [12345, 1]}
+                "pressure": [1.0, 3.0, 5.0], "thickness": [0.1], "seed": [12345, 1]}
     for key, value in defaults.items():
         setattr(chosen, key, getattr(chosen, key) or value)
     for change in chosen.com1dfa + chosen.set:
         if "=" not in change:
             parser.error(f"{change}: a change is KEY=VALUE")
-    if min(chosen.cell + chosen.pressure + [chosen.curvature or 1]) <= 0:
-        parser.error("cell sizes, pressures and the length of the curvature are positive")
+    if min(chosen.cell + chosen.pressure + chosen.thickness + [chosen.curvature or 1]) <= 0:
+        parser.error("cell sizes, pressures, thicknesses and the length of the curvature are positive")
     return chosen
 
 
@@ -88,12 +90,12 @@ def inputs(path):
     return one(path, ["dem.asc", "dem.tif"], "DEM"), one(path, ["release.shp"], "release")
 
 
-def mountain(folder, program):
+def mountain(folder, granflow):
     """The mountain of `granflow new avalanche`, its release written as a shapefile for AvaFrame."""
     import fiona
 
     folder.mkdir()
-    subprocess.run([program, "new", "avalanche"], cwd=folder, check=True, capture_output=True)
+    subprocess.run([granflow, "new", "avalanche"], cwd=folder, check=True, capture_output=True)
     schema = {"geometry": "Polygon", "properties": {"name": "str", "thickness": "float"}}
     with fiona.open(folder / "release.geojson") as source, fiona.open(folder / "release.shp", "w", "ESRI Shapefile", schema) as copy:
         for feature in source:
@@ -186,7 +188,8 @@ def compare(chosen, out, dem, release):
                 text = case(ground, release, friction, scheme, chosen.until, chosen.curvature or 2 * cell)
                 found.append(runs.granflow(folder / scheme, text, f"granflow, {scheme}", threads=chosen.threads, sets=chosen.set,
                                            path=chosen.granflow))
-            groups.append(report.group(name, cell, ground, polygons, found, chosen.pressure))
+            groups.append(report.group(name, cell, ground, polygons, found,
+                                       {"pressure": chosen.pressure, "thickness": chosen.thickness}))
             report.figure(groups[-1], out / f"{name}_{cell:g}m.png")
             report.write(out, groups, chosen)
     return groups
@@ -198,11 +201,10 @@ def main():
         inputs(chosen.path)
     if chosen.earlier and not (chosen.earlier / "comparison.json").is_file():
         raise Refusal(f"{chosen.earlier} holds no comparison.json", "give the --out of an earlier comparison")
+    granflow = program(chosen.granflow)
     out = fresh_folder(chosen.out)
     enter("avaframe", AVAFRAME, chosen.venv)
-    from locate import program
-
-    dem, release = inputs(chosen.path) if chosen.path else mountain(out / "mountain", program(chosen.granflow))
+    dem, release = inputs(chosen.path) if chosen.path else mountain(out / "mountain", granflow)
     compare(chosen, out, dem.resolve(), release.resolve())
     print((out / "comparison.md").read_text(encoding="utf-8"))
     print(f"written: {out / 'comparison.md'}, comparison.json, a figure for each law and cell size, and every run in a folder of its own")

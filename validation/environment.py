@@ -47,7 +47,7 @@ def pip(folder, packages):
     elif any(word in done.stderr for word in ("Connection", "resolve", "Retrying", "timed out", "Network")):
         cure = f"connect to a network; or bring wheels: {python_of(folder)} -m pip install --no-index --find-links WHEELS {' '.join(packages)}"
     else:
-        cure = f"the packages were tried with Python 3.11: start the script with it, and --venv at a new folder (this is {sys.version.split()[0]})"
+        cure = f"look whether there is a network; the packages were tried with Python 3.11, this is {sys.version.split()[0]}: with that, give a new folder, --venv FOLDER"
     raise Refusal(f"pip could not install {' '.join(packages)} into {folder}: {last}", cure)
 
 

@@ -31,7 +31,7 @@ class Group:
     rows: list
 
 
-def numbers(run, reference, heights, released, transform, pressures):
+def numbers(run, reference, heights, released, transform, limits):
     """What the tables say of a run."""
     reach, angle = scores.runout(run.maps["pressure"], heights, released, transform)
     row = {"run": run.name, "volume_m3": run.volume, "ended_s": run.ended, "reason": run.reason, "steps": run.steps, "seconds": run.seconds,
@@ -40,12 +40,13 @@ def numbers(run, reference, heights, released, transform, pressures):
     if "final" in run.maps:
         row["final_thickness_max_m"] = run.maps["final"].max()
         row["final_centroid_m"] = scores.centroid(run.maps["final"], transform)
-    row["areas"] = {f"{limit:g}": dataclasses.asdict(scores.areas(reference.maps["pressure"], run.maps["pressure"], limit, transform.a))
-                    for limit in pressures}
+    bounds = [("pressure", limit, "kPa") for limit in limits["pressure"]] + [("thickness", limit, "m") for limit in limits["thickness"]]
+    row["areas"] = {f"{limit:g} {unit}": dataclasses.asdict(scores.areas(reference.maps[what], run.maps[what], limit, transform.a))
+                    for what, limit, unit in bounds}
     return row
 
 
-def group(law, cell, ground, polygons, found, pressures):
+def group(law, cell, ground, polygons, found, limits):
     """The numbers of all runs on one grid; a refusal if a raster has other cells than the first run's."""
     heights, transform = runs.elevation(ground)
     for run in found:
@@ -53,7 +54,7 @@ def group(law, cell, ground, polygons, found, pressures):
             raise Refusal(f"{run.folder}: cells differ from those of {ground}: {run.maps['pressure'].shape}, {heights.shape}",
                           "give --cell the cell size of the reference, and the DEM that it was computed on")
     released = rasterize(polygons, out_shape=heights.shape, transform=transform).astype(bool)
-    rows = [numbers(run, found[0], heights, released, transform, pressures) for run in found]
+    rows = [numbers(run, found[0], heights, released, transform, limits) for run in found]
     return Group(law, cell, heights, transform, found, rows)
 
 
@@ -75,11 +76,11 @@ def table(group):
                      f"| {row['peak_pressure_kpa']:.0f} kPa | {cell_of(row['runout_m'], '.0f')} m "
                      f"| {final} | {seconds} |")
     first = group.rows[0]["run"]
-    lines += ["", f"Areas of peak pressure, against {first}:", "", "| run | above | area | Jaccard index | covered | missed | false |",
+    lines += ["", f"Areas of peak pressure or peak thickness, against {first}:", "", "| run | above | area | Jaccard index | covered | missed | false |",
               "| --- | --- | --- | --- | --- | --- | --- |"]
     for row in group.rows:
         for limit, areas in row["areas"].items():
-            lines.append(f"| {row['run']} | {limit} kPa | {areas['run']:.0f} m² | {areas['jaccard']:.3f} | {100 * areas['covered']:.1f} % "
+            lines.append(f"| {row['run']} | {limit} | {areas['run']:.0f} m² | {areas['jaccard']:.3f} | {100 * areas['covered']:.1f} % "
                          f"| {areas['missed']:.0f} m² | {areas['false']:.0f} m² |")
     return "\n".join(lines) + "\n"
 
@@ -136,7 +137,7 @@ def figure(group, path):
     index = scores.areas(theirs.maps["pressure"], ours.maps["pressure"], 1.0, cell).jaccard
     axes[2].set_title(f"1 kPa: Jaccard index {index:.3f}")
     handles = [Patch(color=colour, label=label) for label, colour in COLOURS.items()]
-    axes[2].legend(handles=handles, loc="upper center", bbox_to_anchor=(0.5, -0.2))
+    plot.legend(handles=handles, loc="outside lower right", ncols=3)
     plot.suptitle(f"{group.law}, cells of {group.cell:g} m")
     plot.savefig(path, dpi=120)
     plt.close(plot)

@@ -8,6 +8,7 @@ import pathlib
 import sys
 
 from environment import AVAFRAME, enter, fresh_folder, guarded
+from locate import program
 
 EPILOG = """
 A cap of the height h0 (1 - (x² + y²)/L²), measured in the plane and normal to it, is released on a plane of the angle zeta with
@@ -185,7 +186,11 @@ files = ["netcdf", "geotiff"]
 
 
 def com1dfa(folder, ground, cap, cell, chosen):
-    """com1DFA's frames, one a second, with the settings of AvaFrame's own test where they differ from its defaults."""
+    """com1DFA's frames, one a second, with the settings of AvaFrame's own test where they differ from its defaults.
+
+    Friction is explicit, as there. Implicit friction, com1DFA's default, is divided by the speed before the step, and holds a mass that
+    starts from rest back for seconds: --com1dfa explicitFriction=0 shows it.
+    """
     import runs
 
     asked = {"simTypeList": "null", "resType": "ppr|pft|pfv|FT|Vx|Vy", "tSteps": "0:1", "rho": 200, "tEnd": chosen.end, "stopCrit": 0,
@@ -215,6 +220,7 @@ def errors(exact, found):
 
 def main():
     chosen = arguments()
+    program(chosen.granflow)
     out = fresh_folder(chosen.out)
     enter("avaframe", AVAFRAME, chosen.venv)
     import numpy

@@ -11,14 +11,13 @@ import tempfile
 import unittest
 
 from environment import enter, guarded
+from locate import program
 from tilupy_reader import TILUPY
 
 RESULT = None
 
 
 def demo(folder):
-    from locate import program
-
     subprocess.run([program(), "demo", "--out", str(folder / "demo")], check=True, capture_output=True)
     return folder / "demo" / "result.nc"
 

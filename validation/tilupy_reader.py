@@ -18,6 +18,7 @@ import subprocess
 import sys
 
 from environment import Refusal, enter, fresh_folder, guarded
+from locate import program
 
 TILUPY = ["tilupy==2.1.1", "numpy==2.4.6", "matplotlib==3.11.2", "netCDF4==1.7.5.1.post1"]
 
@@ -57,7 +58,7 @@ def opened(file):
     try:
         data = netCDF4.Dataset(file)
     except OSError as error:
-        raise Refusal(f"{file} cannot be read as NetCDF: {error}", "give the result.nc of a run") from error
+        raise Refusal(f"{file} cannot be read as NetCDF: {error.strerror}", "give the result.nc of a run") from error
     lacking = [name for name in ("thickness", "velocity_x", "velocity_y", "speed", "bed", "peak_thickness", "peak_speed")
                if name not in data.variables]
     if lacking:
@@ -154,13 +155,13 @@ def register():
         tilupy.read.ALLOWED_MODELS.append("granflow")
 
 
-def two_runs(out, program):
+def two_runs(out, granflow):
     """The demo, and the case of `granflow new avalanche` with less friction; both on the built-in mountain."""
     print("making two runs: granflow demo, and the case of granflow new avalanche with mu 0.3", file=sys.stderr)
     folder = out / "runs"
     folder.mkdir()
     for words in (["demo"], ["new", "avalanche"], ["run", "avalanche.toml", "--set", "material.friction.coulomb.mu=0.3", "--out", "softer"]):
-        done = subprocess.run([program, *words], cwd=folder, capture_output=True, text=True, check=False)
+        done = subprocess.run([granflow, *words], cwd=folder, capture_output=True, text=True, check=False)
         if done.returncode:
             raise Refusal(f"granflow {' '.join(words)} ended with status {done.returncode}: {done.stderr.strip()[-500:]}",
                           "cargo build --release -p granflow-cli; or --granflow PROGRAM")
@@ -217,13 +218,13 @@ def score(runs, names, chosen):
 
 def main():
     chosen = arguments()
+    granflow = None if chosen.result else program(chosen.granflow)
     out = fresh_folder(chosen.out)
     enter("tilupy", TILUPY, chosen.venv)
     import tilupy.read
-    from locate import program
 
     register()
-    files = chosen.result or two_runs(out, program(chosen.granflow))
+    files = chosen.result or two_runs(out, granflow)
     found = [tilupy.read.get_results("granflow", file=file) for file in files]
     names = [f"{number} {path.resolve().parent.name}" for number, path in enumerate(files, 1)]
     for run, name in zip(found, names):
