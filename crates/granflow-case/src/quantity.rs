@@ -1,6 +1,7 @@
 //! A quantity over a grid: a number, a shape, a formula or a file.
 
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Deserializer, Serialize};
@@ -240,7 +241,7 @@ impl Prepared {
 #[derive(Debug, Clone)]
 pub struct Values {
     quantity: Prepared,
-    points: Points,
+    points: Arc<Points>,
 }
 
 impl Values {
@@ -267,7 +268,7 @@ impl Look<'_> {
     ) -> Result<Values, CaseError> {
         let quantity = quantity.unwrap_or(&Quantity::Constant(0.0));
         let quantity = quantity.prepare(points, self).map_err(|fault| self.part_fault(key, fault))?;
-        let values = Values { quantity, points: points.clone() };
+        let values = Values { quantity, points: Arc::new(points.clone()) };
         let usual = |value: f64| value.abs() <= LARGEST;
         let wrong = values.iter().position(|value| !usual(value));
         match wrong {

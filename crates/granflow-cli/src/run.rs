@@ -7,7 +7,7 @@ use std::sync::atomic::AtomicBool;
 use granflow::Checked;
 use granflow::output::summary::StopReason;
 use granflow::results::Finished;
-use granflow::run::Run;
+use granflow::run::{Run, reached};
 use granflow::session::{Options, RunError};
 use granflow::sinks::BeginError;
 
@@ -73,7 +73,7 @@ pub fn compute(case: Checked, options: &RunOptions) -> Result<Finished, Failure>
 pub const SET_UP: &str = "reading the files of the case and setting it up";
 
 fn attempt(case: Checked, options: &RunOptions, stop: &AtomicBool) -> Result<Finished, RunError> {
-    let quiet = options.quiet;
+    let (quiet, ends) = (options.quiet, case.plan().ends);
     let mut progress = Progress::new(quiet, case.plan().ends.time);
     let notice: fn(&str) = if quiet { |_| () } else { |text| tell(&format!("note: {text}\n")) };
     let options = Options {
@@ -84,12 +84,18 @@ fn attempt(case: Checked, options: &RunOptions, stop: &AtomicBool) -> Result<Fin
         notice,
     };
     let mut setup = Some(LongWork::new(quiet, SET_UP));
+    let mut writing = None;
     let finished = case.compute(&options, stop, &mut |run: &dyn Run| {
         if setup.take().is_some() {
             run.plane().domain.remarks().iter().for_each(|remark| tell(&format!("{remark}\n")));
         }
         progress.show(run);
+        if writing.is_none() && reached(run, &ends).is_some() {
+            progress.finish();
+            writing = Some(LongWork::new(quiet, "writing the files of the run"));
+        }
     });
+    drop(writing);
     progress.finish();
     finished
 }

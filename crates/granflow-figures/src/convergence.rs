@@ -2,7 +2,8 @@
 
 use super::axes::{Axis, Panel, RIM, Scale, extent, heading};
 use super::canvas::{Area, Canvas, Lettering, Pen};
-use super::colours::{GREY, line_colour};
+use super::colours::GREY;
+use super::curves::solid;
 use super::legend::{Key, Legend, along};
 use super::ticks::{number, short};
 use super::{Figure, FigureError, Picture};
@@ -40,6 +41,11 @@ impl ErrorSeries<'_> {
         });
         (xx > 0.0).then(|| xy / xx)
     }
+
+    fn line(&self, panel: &Panel) -> Vec<[f64; 2]> {
+        let (dx, e): (Vec<f64>, Vec<f64>) = self.points().unzip();
+        panel.line(&dx, &e)
+    }
 }
 
 /// Errors over cell sizes, both logarithmic.
@@ -75,48 +81,85 @@ impl Figure for Convergence<'_> {
         let mut canvas = Canvas::new(width, height);
         let top = heading(&mut canvas, self.title, self.subtitle, width);
         let outer = Area { left: RIM, top, width: width - 2.0 * RIM, height: height - top - RIM };
-        let panel = Panel::fit(outer, x, y, self.size.caption(), self.error.caption());
-        panel.draw_grid(&mut canvas);
-
-        let mut taken = Vec::new();
-        canvas.clip(Some(panel.area));
+        let fitted = |outer| Panel::fit(outer, x, y, self.size.caption(), self.error.caption());
         // All slopes leave one point, under the coarsest and least error, so that they fan out to the left.
         let coarsest =
             points().filter(|p| p.0 >= sizes[1] * (1.0 - 1e-9)).map(|p| p.1).fold(f64::INFINITY, f64::min);
-        let foot = (sizes[1], coarsest / 1.4);
-        for &order in self.orders {
-            let error = |dx: f64| foot.1 * (dx / foot.0).powf(order);
-            let line = panel.line(&[sizes[0], sizes[1]], &[error(sizes[0]), error(sizes[1])]);
-            canvas.line(&line, Pen { dashes: &[5.0, 4.0], ..Pen::new(GREY, 1.1) });
-            along(&line, panel.area, &mut taken);
-            // The name stands on the line, two thirds of the way to the finest grid or where the line leaves the panel.
-            let lowest = y.range[0] * (y.range[1] / y.range[0]).powf(0.05);
-            let leaves = if order > 0.0 { foot.0 * (lowest / foot.1).powf(1.0 / order) } else { 0.0 };
-            let end = sizes[0].max(leaves);
-            let dx = foot.0 * (end / foot.0).powf(0.8);
-            let name = format!("order {}", short(order));
-            let angle = (line[1][1] - line[0][1]).atan2(line[1][0] - line[0][0]).to_degrees();
-            let how =
-                Lettering { colour: GREY, angle: -angle, halo: true, ..Lettering::new(11.0, [0.5, 1.35]) };
-            canvas.text(&name, panel.place(dx, error(dx)), how);
+        let slopes = Slopes { foot: (sizes[1], coarsest / 1.4), finest: sizes[0], least: y.range };
+
+        let legend = self.legend();
+        let mut panel = fitted(outer);
+        let (mut place, covered) = legend.best_place(panel.area, &self.taken(&panel, &slopes));
+        if covered > 2 && !legend.is_empty() {
+            panel = fitted(Area { width: outer.width - legend.size()[0] - 6.0, ..outer });
+            place = Area { left: panel.area.right() + 12.0, top: panel.area.top, ..place };
         }
-        let mut legend = Legend::default();
+        panel.draw_grid(&mut canvas);
+        canvas.clip(Some(panel.area));
+        self.orders.iter().for_each(|order| slopes.draw(&mut canvas, &panel, *order));
         for (turn, series) in self.series.iter().enumerate() {
-            let (dx, e): (Vec<f64>, Vec<f64>) = series.points().unzip();
-            let line = panel.line(&dx, &e);
-            let pen = Pen::new(line_colour(turn), 1.9);
+            let (line, pen) = (series.line(&panel), solid(turn));
             canvas.line(&line, pen);
             line.iter().for_each(|&p| canvas.disc(p, 3.4, pen.colour));
-            along(&line, panel.area, &mut taken);
-            let order =
-                series.order().map_or(String::new(), |order| format!(" (order {})", number(order, 2)));
-            legend.add(format!("{}{order}", series.name), Key::Line(pen));
         }
         canvas.clip(None);
         panel.draw_frame(&mut canvas);
-        let (place, _) = legend.best_place(panel.area, &taken);
         legend.draw(&mut canvas, place);
         Ok(canvas.finish())
+    }
+}
+
+impl Convergence<'_> {
+    fn legend(&self) -> Legend {
+        let mut legend = Legend::default();
+        for (turn, series) in self.series.iter().enumerate() {
+            let order =
+                series.order().map_or(String::new(), |order| format!(" (order {})", number(order, 2)));
+            legend.add(format!("{}{order}", series.name), Key::Line(solid(turn)));
+        }
+        legend
+    }
+
+    /// Where lines run in a panel.
+    fn taken(&self, panel: &Panel, slopes: &Slopes) -> Vec<[f64; 2]> {
+        let mut taken = Vec::new();
+        let of_orders = self.orders.iter().map(|order| slopes.line(panel, *order));
+        let of_series = self.series.iter().map(|series| series.line(panel));
+        of_orders.chain(of_series).for_each(|line| along(&line, panel.area, &mut taken));
+        taken
+    }
+}
+
+/// Lines of given orders for comparison, which leave one point.
+struct Slopes {
+    /// The point: cell size and error.
+    foot: (f64, f64),
+    /// The finest cell size.
+    finest: f64,
+    /// The errors at the foot and the head of the panel.
+    least: [f64; 2],
+}
+
+impl Slopes {
+    fn error(&self, order: f64, dx: f64) -> f64 {
+        self.foot.1 * (dx / self.foot.0).powf(order)
+    }
+
+    fn line(&self, panel: &Panel, order: f64) -> Vec<[f64; 2]> {
+        let ends = [self.finest, self.foot.0];
+        panel.line(&ends, &ends.map(|dx| self.error(order, dx)))
+    }
+
+    fn draw(&self, canvas: &mut Canvas, panel: &Panel, order: f64) {
+        let line = self.line(panel, order);
+        canvas.line(&line, Pen { dashes: &[5.0, 4.0], ..Pen::new(GREY, 1.1) });
+        // The name stands on the line, two thirds of the way to the finest grid or where the line leaves the panel.
+        let lowest = self.least[0] * (self.least[1] / self.least[0]).powf(0.05);
+        let leaves = if order > 0.0 { self.foot.0 * (lowest / self.foot.1).powf(1.0 / order) } else { 0.0 };
+        let dx = self.foot.0 * (self.finest.max(leaves) / self.foot.0).powf(0.8);
+        let angle = (line[1][1] - line[0][1]).atan2(line[1][0] - line[0][0]).to_degrees();
+        let how = Lettering { colour: GREY, angle: -angle, halo: true, ..Lettering::new(11.0, [0.5, 1.35]) };
+        canvas.text(&format!("order {}", short(order)), panel.place(dx, self.error(order, dx)), how);
     }
 }
 

@@ -47,10 +47,10 @@ impl Curve<'_> {
     }
 
     pub(super) fn key(&self, turn: usize) -> Key {
-        let pen = Pen::new(self.colour(turn), 1.9);
+        let pen = Pen { colour: self.colour(turn), ..solid(turn) };
         let dashes: &'static [f32] = match self.style {
             Style::Points => return Key::Points(self.colour(turn)),
-            Style::Solid if self.colour.is_none() && turn >= LINE_COLOURS => &[12.0, 2.5], // colours come round again
+            Style::Solid if self.colour.is_none() => pen.dashes,
             Style::Solid => &[],
             Style::Dashed => &[7.0, 4.0],
             Style::Dotted => &[2.0, 3.0],
@@ -71,6 +71,12 @@ impl Curve<'_> {
             Key::Area(..) => {}
         }
     }
+}
+
+/// The pen of line number `turn`; with long dashes where the colours come round again.
+pub(super) fn solid(turn: usize) -> Pen {
+    let dashes: &'static [f32] = if turn < LINE_COLOURS { &[] } else { &[12.0, 2.5] };
+    Pen { dashes, ..Pen::new(line_colour(turn), 1.9) }
 }
 
 /// A filled band between two curves.

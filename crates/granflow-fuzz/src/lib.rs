@@ -3,6 +3,7 @@
 mod campaign;
 mod mutate;
 pub mod readers;
+mod results;
 
 pub use campaign::{Outcome, Until, campaign, once};
 

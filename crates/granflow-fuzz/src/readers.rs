@@ -1,5 +1,6 @@
 //! What reads files of others, and valid files for it to begin with.
 
+use crate::results;
 use granflow_case::{Case, FileAccess, Formula, Outline};
 use granflow_geo::raster::Raster;
 use granflow_geo::release::{Layer, Thickness};
@@ -16,8 +17,15 @@ pub struct Reader {
     pub read: fn(&[u8]),
 }
 
+impl Reader {
+    /// It reads a file, which takes a hundred times as long as bytes in memory.
+    pub fn on_disk(&self) -> bool {
+        ["checkpoint", "frames", "ledger", "summary", "result"].contains(&self.name)
+    }
+}
+
 /// All readers.
-pub const READERS: [Reader; 9] = [
+pub const READERS: [Reader; 14] = [
     Reader { name: "formula", seeds: formulas, read: formula },
     Reader { name: "case", seeds: cases, read: case },
     Reader { name: "npy", seeds: arrays, read: |bytes| with_thickness("h.npy", bytes) },
@@ -27,6 +35,11 @@ pub const READERS: [Reader; 9] = [
     Reader { name: "geojson", seeds: geojson, read: |bytes| layer(bytes, None) },
     Reader { name: "shapefile", seeds: shapes, read: |bytes| layer(bytes, None) },
     Reader { name: "dbf", seeds: attributes, read: |bytes| layer(&shapes()[0], Some(bytes)) },
+    Reader { name: "checkpoint", seeds: results::checkpoints, read: results::checkpoint },
+    Reader { name: "frames", seeds: results::frames, read: results::stored },
+    Reader { name: "ledger", seeds: results::ledgers, read: results::ledger },
+    Reader { name: "summary", seeds: results::summaries, read: results::summary },
+    Reader { name: "result", seeds: results::results, read: results::result },
 ];
 
 fn texts(texts: &[&str]) -> Vec<Vec<u8>> {

@@ -18,7 +18,7 @@ mod trickle;
 
 pub use crate::entry::{Entry, sum};
 pub use crate::stop_reason::StopReason;
-pub use drive::{DriveError, drive};
+pub use drive::{DriveError, drive, reached};
 pub use entry::mass_error;
 pub use field_view::FieldView;
 pub use frames::Frames;

@@ -293,8 +293,8 @@ impl Initial {
     }
 }
 
-/// Bytes of the state of a cell while it is stepped.
-const STATE: f64 = 32.0;
+/// Bytes of the state of a cell in two dimensions, before anything is computed.
+const STATE: f64 = 24.0;
 
 /// What is written where the case does not say.
 const WRITTEN: Defaults = Defaults { files: ON_A_GRID, precision: Precision::F64, threshold: THRESHOLD };

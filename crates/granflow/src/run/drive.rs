@@ -42,7 +42,6 @@ impl From<SinkError> for DriveError {
 /// [`DriveError`]: the sinks have seen every step before.
 pub fn drive(run: &mut dyn Run, ends: &Ends, sinks: &mut [&mut dyn Sink]) -> Result<StopReason, DriveError> {
     run.stepper_mut().show_end();
-    let last = ends.time.unwrap_or(f64::INFINITY);
     if ends.kinetic_energy.is_some() {
         run.track_energy();
     }
@@ -50,23 +49,19 @@ pub fn drive(run: &mut dyn Run, ends: &Ends, sinks: &mut [&mut dyn Sink]) -> Res
         run.track_trickle(thickness);
     }
     law::check_state(run)?;
-    let reason = steps(run, ends, last, sinks)?;
+    let reason = steps(run, ends, sinks)?;
     law::check_end(run)?;
     Ok(reason)
 }
 
 /// The steps to the first of the ends.
-fn steps(
-    run: &mut dyn Run,
-    ends: &Ends,
-    last: f64,
-    sinks: &mut [&mut dyn Sink],
-) -> Result<StopReason, DriveError> {
+fn steps(run: &mut dyn Run, ends: &Ends, sinks: &mut [&mut dyn Sink]) -> Result<StopReason, DriveError> {
+    let last = ends.time.unwrap_or(f64::INFINITY);
     loop {
         if wants_end(sinks) {
             return Ok(StopReason::Interrupted);
         }
-        if let Some(reason) = reached(run, ends, last) {
+        if let Some(reason) = reached(run, ends) {
             return Ok(reason);
         }
         run.stepper_mut().expect(next_instant(sinks));
@@ -127,8 +122,8 @@ fn show_instants(run: &mut dyn Run, sinks: &mut [&mut dyn Sink], begin: f64) -> 
     }
 }
 
-/// Why the run is over, if it is.
-fn reached(run: &dyn Run, ends: &Ends, last: f64) -> Option<StopReason> {
+/// Why a run is over by its ends, if it is.
+pub fn reached(run: &dyn Run, ends: &Ends) -> Option<StopReason> {
     let record = run.record();
     match ends.until {
         Some(Until::Rest { .. }) if run.at_rest() => return Some(StopReason::AtRest),
@@ -146,7 +141,7 @@ fn reached(run: &dyn Run, ends: &Ends, last: f64) -> Option<StopReason> {
     if run.steps() > 0 && ends.kinetic_energy.is_some_and(calm) {
         return Some(StopReason::KineticEnergy);
     }
-    if run.time() >= last {
+    if ends.time.is_some_and(|last| run.time() >= last) {
         return Some(StopReason::EndTime);
     }
     ends.steps.is_some_and(|steps| run.steps() >= steps).then_some(StopReason::Steps)

@@ -1,6 +1,7 @@
 //! The inclination zeta(x) of a chute and its curvature kappa = -d zeta/dx.
 
 use std::f64::consts::FRAC_PI_2;
+use std::sync::Arc;
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Deserializer, Serialize};
@@ -74,7 +75,7 @@ enum Zeta {
 /// Slope and curvature of every column of cells, evaluated where they are asked for.
 #[derive(Debug, Clone)]
 pub struct Columns {
-    curve: Curve,
+    curve: Arc<Curve>,
     axis: Axis,
 }
 
@@ -112,7 +113,7 @@ impl Slope {
             }
         }
         let curve = Curve::new(self).map_err(|fault| look.part_fault(key, fault))?;
-        let columns = Columns { curve, axis: axis.clone() };
+        let columns = Columns { curve: Arc::new(curve), axis: axis.clone() };
         for cell in 0..axis.cells {
             let (zeta, kappa) = (columns.zeta(cell), columns.kappa(cell));
             if !fits(zeta) || !kappa.is_finite() {
