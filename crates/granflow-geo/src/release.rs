@@ -8,6 +8,7 @@ mod sparse;
 mod table;
 mod vector;
 
+pub use coverage::shares as covered_shares;
 pub use error::ReleaseError;
 pub use outlines::Outlines;
 pub use sparse::Sparse;
@@ -89,6 +90,23 @@ impl Layer {
             outlines.extend(sound(&self.name, feature.number, feature.polygons)?);
         }
         Ok(outlines)
+    }
+
+    /// What the features have under the name of an attribute, each once, in the order of the file.
+    pub fn values(&self, attribute: &str) -> Vec<&str> {
+        let mut values = Vec::new();
+        for value in self.features.iter().map(|feature| feature.value(attribute)) {
+            if !values.contains(&value) {
+                values.push(value);
+            }
+        }
+        values
+    }
+
+    /// The features alone that have this value of an attribute.
+    pub fn only(mut self, attribute: &str, value: &str) -> Layer {
+        self.features.retain(|feature| feature.value(attribute) == value);
+        self
     }
 
     /// The coordinate reference system, where the file or the `.prj` beside it says one.

@@ -27,6 +27,9 @@ pub const FILM: f64 = 1e-4;
 /// The threshold on a mountain where nobody says another one \[m\].
 pub const THRESHOLD: f64 = 0.01;
 
+/// The length over which slope and curvature of a mountain are taken where nobody says another one \[m\].
+pub const CURVATURE: f64 = 20.0;
+
 /// The thickness of a trickle on a mountain where nobody says another one \[m\].
 pub const TRICKLE: f64 = 0.01;
 

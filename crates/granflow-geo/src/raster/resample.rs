@@ -77,8 +77,9 @@ impl Raster {
 
     /// For each cell of `target` the area that cells with values cover \[m^2\], and the integral of the values over it.
     pub(crate) fn overlap(&self, target: &Raster) -> impl Iterator<Item = (f64, f64)> {
-        let across = shares(self.west, self.cell, self.columns, target.west, target.cell, target.columns);
-        let along = shares(self.south, self.cell, self.rows, target.south, target.cell, target.rows);
+        let across =
+            intervals((self.west, self.cell, self.columns), (target.west, target.cell, target.columns));
+        let along = intervals((self.south, self.cell, self.rows), (target.south, target.cell, target.rows));
         let (columns, rows) = (target.columns, target.rows);
         let cell = move |k: usize| {
             let (mut area, mut sum) = (0.0, 0.0);
@@ -97,8 +98,12 @@ impl Raster {
     }
 }
 
-/// For each new interval the old ones that it overlaps, each with the common length.
-fn shares(from: f64, step: f64, count: usize, to: f64, new: f64, cells: usize) -> Vec<Vec<(usize, f64)>> {
+/// For each new interval the old ones that it overlaps, each with the common length; both are equal intervals along an axis,
+/// given as begin, length and count.
+pub fn intervals(
+    (from, step, count): (f64, f64, usize),
+    (to, new, cells): (f64, f64, usize),
+) -> Vec<Vec<(usize, f64)>> {
     let interval = |k: usize| {
         let low = (to + k as f64 * new - from) / step;
         let high = (to + (k + 1) as f64 * new - from) / step;

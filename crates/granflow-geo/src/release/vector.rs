@@ -29,6 +29,13 @@ pub(super) struct Feature {
     pub attributes: Vec<(String, String)>,
 }
 
+impl Feature {
+    /// The value of an attribute; empty where there is none.
+    pub fn value(&self, name: &str) -> &str {
+        self.attributes.iter().find(|(own, _)| own == name).map_or("", |(_, value)| value)
+    }
+}
+
 impl Layer {
     /// Reads a shapefile (`.shp`; the attributes from `.dbf`, the CRS from `.prj`) or else GeoJSON.
     ///

@@ -56,7 +56,7 @@ pub(super) struct Window {
 
 impl Default for Curvature {
     fn default() -> Self {
-        Self::Window(Window { length: Length(20.0) })
+        Self::Window(Window { length: Length(super::CURVATURE) })
     }
 }
 

@@ -12,6 +12,7 @@ use crate::output::outlines::{Lattice, Outline, contour};
 use crate::output::summary::Summary;
 use crate::raster::Raster;
 use crate::release::Sparse;
+use crate::terrain::{Curvature, Terrain};
 use granflow_geo::Remark;
 use std::borrow::Cow;
 use std::sync::Arc;
@@ -36,6 +37,8 @@ pub struct TerrainDomain {
     pub density: f64,
     /// Thickness normal to the bed that a layer must exceed to count: outside that its maps have no value \[m\].
     pub threshold: f64,
+    /// The length over which the slope of the bed is taken.
+    pub curvature: Curvature,
     /// What was decided while the files of the case were read, and what looks wrong in them.
     pub remarks: Vec<Remark>,
 }
@@ -61,6 +64,14 @@ impl Domain for TerrainDomain {
         self.remarks.iter().map(ToString::to_string).collect()
     }
 
+    fn attributes(&self) -> Vec<(&'static str, String)> {
+        let curvature = match self.curvature {
+            Curvature::Length(length) => format!("{length} m"),
+            Curvature::Off => "off".to_owned(),
+        };
+        vec![("curvature", curvature)]
+    }
+
     fn elevation(&self) -> Option<&[f64]> {
         Some(&self.raster.values)
     }
@@ -68,6 +79,14 @@ impl Domain for TerrainDomain {
     #[cfg(feature = "files")]
     fn crs(&self) -> Option<Crs> {
         self.raster.crs.as_ref().map(|crs| Crs { epsg: crs.epsg, wkt: crs.wkt.clone() })
+    }
+
+    fn per_plan_area(&self, cells: &[Option<usize>]) -> Vec<f64> {
+        let terrain = Terrain::new(self.raster.clone(), self.curvature);
+        let of = |cell: &Option<usize>| {
+            cell.map_or(1.0, |cell| 1.0 / terrain.fit(self.raster.place(cell)).cosine())
+        };
+        cells.iter().map(of).collect()
     }
 
     fn raster(&self) -> Option<&Raster> {

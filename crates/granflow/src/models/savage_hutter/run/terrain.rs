@@ -63,6 +63,7 @@ pub(super) fn simulate(
         release: Arc::new(thickness),
         density: plan.material.density,
         threshold: run.output.threshold,
+        curvature: curvature_of(plan),
         remarks,
     };
     let plane = Plane::of(&grid, Arc::new(domain));
@@ -195,7 +196,12 @@ fn curved(run: &RunPlan, plan: &Plan, bed: Raster) -> Result<Terrain, StartError
         let cure = "the window spans a few cells, for instance length = \"20 m\"";
         return Err(run.fault("terrain.curvature.length", message, cure).into());
     }
-    Ok(Terrain::new(bed, plan.curvature.map_or(Curvature::Off, Curvature::Length)))
+    Ok(Terrain::new(bed, curvature_of(plan)))
+}
+
+/// The length over which a case takes the derivatives of the bed.
+fn curvature_of(plan: &Plan) -> Curvature {
+    plan.curvature.map_or(Curvature::Off, Curvature::Length)
 }
 
 /// Adds the volume per plan area of one release.
