@@ -50,6 +50,7 @@ mod region;
 mod source;
 mod stepping;
 mod units;
+mod watched;
 
 pub use boundary::Side;
 pub use case::Case;
@@ -63,6 +64,7 @@ pub use kinds::*;
 pub use nearest::nearest;
 pub use plan::{Ends, Frames, OutputPlan, RunPlan, Stepping, Until};
 pub use precision::Precision;
+pub use watched::{Gauge, Line, Section, Watched};
 
 #[cfg(test)]
 mod tests;

@@ -24,6 +24,9 @@ pub struct Output {
     /// Precision of the numbers in the files (default f64 on a grid, f32 on terrain).
     #[serde(skip_serializing_if = "Option::is_none")]
     pub precision: Option<Precision>,
+    /// Simulated time between two lines of gauges.csv and sections.csv (default: a line after every step).
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub series_every: Option<f64>,
     /// Thickness normal to the bed that a layer must exceed to count in peaks, times and outlines (default
     /// 0.01 m on terrain, 1e-3 on a chute).
     #[serde(skip_serializing_if = "Option::is_none")]

@@ -6,6 +6,7 @@ use super::fault::CaseError;
 use super::file_kind::FileKind;
 use super::precision::Precision;
 use super::source::Source;
+use super::watched::Watched;
 
 /// The part of a checked case that every kind has.
 #[derive(Debug, Clone)]
@@ -24,6 +25,8 @@ pub struct RunPlan {
     pub ends: Ends,
     /// What is written.
     pub output: OutputPlan,
+    /// Where it is looked at.
+    pub watched: Watched,
     /// What is allowed but may surprise, one sentence each.
     pub notes: Vec<String>,
     /// The files that the case names, seen from the working folder.

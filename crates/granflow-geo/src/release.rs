@@ -13,6 +13,7 @@ pub use error::ReleaseError;
 pub use outlines::Outlines;
 pub use sparse::Sparse;
 pub use vector::Layer;
+pub(crate) use vector::named as named_system;
 
 use crate::Remark;
 use crate::raster::{Comparison, Crs, Raster, uncertain};

@@ -54,6 +54,7 @@
 //! | [`run`] | a run one can hold: stepped, looked into, saved; the loop to an end; models of your own by [`run::Physics`] |
 //! | [`sinks`] | what is shown a run after every step: memory, files, a callback |
 //! | [`session`] | from a checked case to its files, as `granflow run` does it |
+//! | [`watch`] | gauges and sections of a case on the cells of its run |
 //! | [`model`], [`models`] | a model as files and figures see it; those of this library |
 //! | [`results`], [`output`] | what a run leaves; one file per format |
 //! | [`compare`](mod@compare) | how well a run meets another one, or what was mapped |
@@ -93,6 +94,7 @@ pub mod sinks;
 pub mod speed;
 mod start_error;
 mod stop_reason;
+pub mod watch;
 
 pub use case::{Case, Checked};
 pub use disk::Disk;

@@ -8,6 +8,7 @@ mod drive;
 mod entry;
 mod field_view;
 mod frames;
+mod passage;
 mod record;
 mod saved;
 mod simulated;
@@ -23,7 +24,9 @@ pub use field_view::FieldView;
 pub use frames::Frames;
 pub(crate) use frames::after;
 pub use granflow_case::{Ends, Until};
+pub use granflow_engine::simulation::Face;
 pub use granflow_engine::simulation::{Failure, Totals};
+pub use passage::Passage;
 pub use record::Record;
 pub use saved::Saved;
 pub use simulated::{CellOf, Field, Numbers, Physics, Simulated, Value};
@@ -58,6 +61,12 @@ pub trait Run: Send + Sync {
     fn track_energy(&mut self);
     /// Look now and then whether more than a trickle of this thickness moves, for an end at rest but for a trickle.
     fn track_trickle(&mut self, thickness: f64);
+
+    /// Count from now on what passes these sections: each some faces, with 1 where passing towards larger coordinates counts,
+    /// -1 where the other way does.
+    fn track_passage(&mut self, sections: Vec<Vec<(Face, f64)>>);
+    /// What has passed each section of [`Run::track_passage`] up to the time shown, by the scheme's own fluxes.
+    fn passages(&self) -> Vec<Passage>;
 
     /// One step, not beyond time `until`; returns its length. It is infinite where nothing can move and `until` is
     /// infinite: the state is final.

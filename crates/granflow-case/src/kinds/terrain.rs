@@ -13,6 +13,7 @@ use crate::output::{Defaults, Output};
 use crate::plan::RunPlan;
 use crate::precision::Precision;
 use crate::source::Missing;
+use crate::watched::{self, Gauge, SectionWords};
 
 mod release;
 mod words;
@@ -91,6 +92,12 @@ pub(crate) struct Words {
     /// The files.
     #[serde(default)]
     output: Output,
+    /// Places that are looked at.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    gauge: Vec<Gauge>,
+    /// Lines through which the passing mass is counted.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    section: Vec<SectionWords>,
 }
 
 /// The material.
@@ -136,6 +143,7 @@ impl Written for Words {
         let named = on_terrain(look, scheme.name)?;
         let ends = time.check(look, scheme.name, TRICKLE)?;
         let written = output.check(look, &ends, &WRITTEN)?;
+        let watched = watched::check(look, &self.gauge, &self.section, output.series_every, 2)?;
         let curvature = terrain.check(look)?;
         let releases = release.iter().enumerate();
         let releases = releases
@@ -145,7 +153,7 @@ impl Written for Words {
         for (index, one) in release.iter().enumerate() {
             one.check_files(look, &format!("release[{index}]"))?;
         }
-        let run = avalanche::plan(look, title, scheme, &material, stepping, ends, written);
+        let run = avalanche::plan(look, title, scheme, &material, stepping, ends, (written, watched));
         let kind = Kind::Terrain(Plan {
             dem: look.locate(&terrain.dem),
             crs: terrain.crs.clone(),
@@ -206,9 +214,9 @@ const WRITTEN: Defaults = Defaults {
 };
 
 /// Keys that not every model has.
-const KEYS: [&str; 7] = {
-    let [material, film, rest_speed, trickle, stop] = avalanche::KEYS;
-    [material, film, rest_speed, trickle, stop, "terrain", "release"]
+const KEYS: [&str; 10] = {
+    let [material, film, rest_speed, trickle, stop, gauge, section, series] = avalanche::KEYS;
+    [material, film, rest_speed, trickle, stop, gauge, section, series, "terrain", "release"]
 };
 
 /// A key that only a scaled case has.

@@ -239,7 +239,7 @@ fn geojson(path: &Path, bytes: &[u8]) -> Result<Layer, ReleaseError> {
 }
 
 /// The system that the member `crs` names (GeoJSON of 2008; RFC 7946 dropped it, GDAL and QGIS still write it).
-fn named(crs: &geojson::JsonValue) -> Option<Crs> {
+pub(crate) fn named(crs: &geojson::JsonValue) -> Option<Crs> {
     let properties = crs.get("properties")?;
     if let Some(code) = properties.get("code") {
         return Crs::parse(&format!("EPSG:{code}")).ok();

@@ -143,6 +143,11 @@ pub trait Domain: Any + fmt::Debug + Send + Sync {
         vec![1.0; cells.len()]
     }
 
+    /// Dynamic pressure of a speed along the bed (kPa); NaN where the density is not known.
+    fn pressure(&self, _speed: f64) -> f64 {
+        f64::NAN
+    }
+
     /// The cells as a raster that can be written for a geographic information system.
     #[cfg(feature = "geo")]
     fn raster(&self) -> Option<&Raster> {

@@ -1,6 +1,7 @@
 //! A simulation of the engine as a [`Run`]: what a model adds to its scheme is its [`Physics`].
 
-use super::{Failure, FieldView, Maps, Record, Run, Saved, Totals, trickle};
+use super::passage::Passages;
+use super::{Face, Failure, FieldView, Maps, Passage, Record, Run, Saved, Totals, trickle};
 use crate::model::Plane;
 use granflow_engine::Stepper;
 use granflow_engine::grid::Layout;
@@ -114,6 +115,8 @@ pub struct Simulated<const D: usize, P: Physics<D>> {
     tracks_energy: bool,
     /// Thickness of a trickle, if that is looked for.
     trickle: Option<f64>,
+    /// What passes sections, where there are some.
+    passages: Passages,
     /// The drift of the step before [`Run::restore`], until the next step.
     restored_drift: Option<Vec<f64>>,
 }
@@ -143,6 +146,7 @@ impl<const D: usize, P: Physics<D>> Simulated<D, P> {
             record,
             tracks_energy: false,
             trickle: None,
+            passages: Passages::default(),
             restored_drift: None,
         }
     }
@@ -200,6 +204,12 @@ impl<const D: usize, P: Physics<D>> Run for Simulated<D, P> {
     fn track_trickle(&mut self, thickness: f64) {
         self.trickle = Some(thickness);
     }
+    fn track_passage(&mut self, sections: Vec<Vec<(Face, f64)>>) {
+        self.passages = Passages::through(sections);
+    }
+    fn passages(&self) -> Vec<Passage> {
+        self.passages.at(self.simulation.time())
+    }
     fn at_rest(&self) -> bool {
         if self.simulation.is_shown() {
             return false;
@@ -215,11 +225,16 @@ impl<const D: usize, P: Physics<D>> Run for Simulated<D, P> {
         if !self.simulation.wanted_step().is_finite() && !until.is_finite() {
             return Ok(f64::INFINITY);
         }
-        let begun = Instant::now();
+        if !self.passages.is_empty() {
+            // The state before every step: what passed in it is found from that.
+            self.simulation.expect(f64::NEG_INFINITY);
+        }
+        let (begin, begun) = (self.simulation.time(), Instant::now());
         let advanced = self.simulation.advance(until);
         self.record.stepping += begun.elapsed();
         self.restored_drift = None;
         let dt = advanced?;
+        self.passages.take(&mut self.simulation, begin);
         self.record.peak_speed = self.record.peak_speed.max(self.simulation.speed());
         if self.tracks_energy {
             self.simulation.take_sums();
@@ -312,11 +327,12 @@ impl<const D: usize, P: Physics<D>> Run for Simulated<D, P> {
             at_rest: self.simulation.at_rest(),
             drift: self.drift().to_vec(),
             model: self.physics.save(),
+            passed: self.passages.save(),
             record: self.record,
         }
     }
     fn restore(&mut self, saved: Saved<'static>) -> Result<(), String> {
-        let Saved { cells, clock, state, mut maps, at_rest, drift, model, record } = saved;
+        let Saved { cells, clock, state, mut maps, at_rest, drift, model, passed, record } = saved;
         let own = self.stepper().cells();
         if cells != own {
             let [[x, y], [own_x, own_y]] = [cells, own];
@@ -338,6 +354,9 @@ impl<const D: usize, P: Physics<D>> Run for Simulated<D, P> {
         }
         if !self.simulation.restore(&clock, state) {
             return Err("its state has another shape".to_owned());
+        }
+        if !self.passages.restore(&passed, self.simulation.time()) {
+            return Err("it has another number of sections".to_owned());
         }
         self.restored_drift = Some(drift);
         if at_rest {

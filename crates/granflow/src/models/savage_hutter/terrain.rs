@@ -89,6 +89,11 @@ impl Domain for TerrainDomain {
         cells.iter().map(of).collect()
     }
 
+    /// rho v^2.
+    fn pressure(&self, speed: f64) -> f64 {
+        self.density * speed * speed / 1000.0
+    }
+
     fn raster(&self) -> Option<&Raster> {
         Some(&self.raster)
     }
@@ -106,7 +111,7 @@ impl Domain for TerrainDomain {
     #[cfg(feature = "files")]
     fn derive(&self, centres: [&[f64]; 2], maps: &mut Maps, summary: &mut Summary) {
         let Some((_, speed)) = maps.iter().find(|(name, _)| *name == "peak_speed") else { return };
-        let pressure: Vec<f64> = speed.iter().map(|v| self.density * v * v / 1000.0).collect();
+        let pressure: Vec<f64> = speed.iter().map(|v| self.pressure(*v)).collect();
         if let Some((length, drop)) = self.runout(centres, &pressure) {
             summary.runout = Some(length);
             summary.reach_angle = Some((drop / length).atan().to_degrees());

@@ -8,6 +8,7 @@ use crate::describe::{Line, axis, case, effort, range};
 use crate::memory::Size;
 use crate::model::{At, Kind};
 use crate::run::Run;
+use crate::watch::Watch;
 use granflow_case::avalanche::Material;
 use granflow_case::chute::Plan as OnChute;
 #[cfg(feature = "geo")]
@@ -32,7 +33,7 @@ pub(crate) fn chute(run: &RunPlan, plan: OnChute) -> Result<Vec<Line>, StartErro
     let mut lines = case(run, material(&plan.material), &format!("{order}, film {:e}, ", plan.scheme.film));
     lines.push(threshold(run, ""));
     lines.extend(grid(&plan));
-    lines.extend(start(run, &mut *chute::start(run, plan)?, READ[0], PICTURES[0]));
+    lines.extend(start(run, &mut *chute::start(run, plan)?, READ[0], PICTURES[0])?);
     Ok(lines)
 }
 
@@ -48,7 +49,7 @@ pub(crate) fn terrain(run: &RunPlan, plan: &OnTerrain) -> Result<Vec<Line>, Star
     let loaded = terrain::load(run, plan)?;
     lines.extend(mountain(&loaded, plan.material.gravity));
     let remarks: Vec<Line> = loaded.remarks.iter().map(|one| (one.kind(), one.text().to_owned())).collect();
-    lines.extend(start(run, &mut *terrain::simulate(run, plan, loaded)?, READ[1], PICTURES[1]));
+    lines.extend(start(run, &mut *terrain::simulate(run, plan, loaded)?, READ[1], PICTURES[1])?);
     lines.extend(remarks);
     Ok(lines)
 }
@@ -62,10 +63,12 @@ const PROFILES: f64 = 10.0;
 
 /// How the state at the start would move; `beside` are the bytes for each cell that set it up,
 /// `pictures` those of what is drawn.
-fn start(run: &RunPlan, start: &mut dyn Run, beside: f64, pictures: f64) -> Vec<Line> {
+fn start(run: &RunPlan, start: &mut dyn Run, beside: f64, pictures: f64) -> Result<Vec<Line>, StartError> {
+    let watch = Watch::of(run, start)?;
     let (totals, rate) = (start.totals(), start.stepper().rate());
     let cells: usize = start.stepper().cells().iter().product();
-    let instants = matches!(run.output.frames, Frames::Every(_) | Frames::Ends);
+    // What passes a section is found from the state before a step, as what is shown of an instant within it.
+    let instants = matches!(run.output.frames, Frames::Every(_) | Frames::Ends) || !watch.sections.is_empty();
     let bytes = start.bytes_per_cell(instants) as f64;
     let plane = start.plane();
     let line = plane.dimensions() == 1;
@@ -90,7 +93,31 @@ fn start(run: &RunPlan, start: &mut dyn Run, beside: f64, pictures: f64) -> Vec<
         ("mass", format!("{:.6} in {} cells", totals.volume, totals.wet)),
         ("pull", format!("at most {pull:.6} of what friction holds: {verdict}")),
     ];
+    lines.extend(watched(run, start, &watch));
     lines.extend(effort(run, &size, rate));
+    Ok(lines)
+}
+
+/// Where it is looked at, and how often.
+fn watched(run: &RunPlan, start: &dyn Run, watch: &Watch) -> Vec<Line> {
+    let plane = start.plane();
+    let at = |cell: usize| {
+        let (x, y) = (plane.x[cell % plane.x.len()], plane.y.get(cell / plane.x.len()));
+        y.map_or(format!("{x}"), |y| format!("{x}, {y}"))
+    };
+    let gauges = watch.gauges.iter();
+    let mut lines: Vec<Line> =
+        gauges.map(|(name, cell)| ("gauge", format!("{name}, the cell at ({})", at(*cell)))).collect();
+    let sections = watch.sections.iter();
+    lines.extend(
+        sections.map(|one| ("section", format!("{}, the faces of {} cells", one.name, one.cells.len()))),
+    );
+    if !watch.is_empty() {
+        let often =
+            run.watched.every.map_or("after every step".to_owned(), |every| format!("every {every} in time"));
+        lines.push(("", format!("looked at {often}, and at the instants of the frames")));
+    }
+    lines.extend(watch.notes.iter().map(|note| ("note", note.clone())));
     lines
 }
 
