@@ -2,6 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
+use super::durations::Durations;
 use super::fault::CaseError;
 use super::file_kind::FileKind;
 use super::precision::Precision;
@@ -86,6 +87,8 @@ pub struct OutputPlan {
     /// Thickness normal to the bed that a layer must exceed to count in peaks, times and outlines (units of
     /// the thickness); 0 for a sandpile, which has none of these.
     pub threshold: f64,
+    /// Thresholds of which maps say for how long they were exceeded.
+    pub durations: Durations,
 }
 
 /// What ends a run; the first that is reached does.

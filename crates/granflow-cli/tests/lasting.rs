@@ -44,7 +44,7 @@ grid.y = { from = -4.0, to = 4.0, cells = 140 }
 material = { slope = "10 deg", friction.coulomb = { angle = "22 deg" } }
 initial.thickness.cap = { height = 1.0, radius = 2.0 }
 time = { until = "rest", end = 40.0 }
-output = { every = 0.25, files = ["netcdf", "csv"] }
+output = { every = 0.25, files = ["netcdf", "csv"], durations = { thickness = 0.1, speed = 0.5 } }
 gauge = [{ name = "foot", at = [2.5, 0.1] }, { name = "side", at = [0.5, 1.0] }]
 section = [{ name = "weir", line = [[1.5, -4.0], [1.5, 4.0]] }]
 "#;

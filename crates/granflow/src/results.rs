@@ -83,6 +83,10 @@ impl Finished {
         let result = dataset(&self.plane, frames.precision(), times, series, &self.maps, about);
         let path = self.result();
         let mut result = result.map_err(|problem| output::Error::invalid(&path, problem))?;
+        for name in ["thickness", "speed", "pressure"].map(|what| format!("duration_{what}_threshold")) {
+            let threshold = self.summary.extra(&name);
+            result.attributes.extend(threshold.map(|threshold| (name, threshold.to_string())));
+        }
         for (table, kind) in self.series.iter().zip([watched::GAUGE, watched::SECTION]) {
             if let Some(table) = table {
                 watched::add(&mut result, &kind, Table::read(table)?, self.plane.domain.units());

@@ -5,6 +5,7 @@
 //! steps a run to one of its [`Ends`] and lets [sinks](crate::sinks) look on.
 
 mod drive;
+mod durations;
 mod entry;
 mod field_view;
 mod frames;
@@ -19,6 +20,7 @@ mod trickle;
 pub use crate::entry::{Entry, sum};
 pub use crate::stop_reason::StopReason;
 pub use drive::{DriveError, drive};
+pub use durations::{Exceeded, What};
 pub use entry::mass_error;
 pub use field_view::FieldView;
 pub use frames::Frames;
@@ -67,6 +69,9 @@ pub trait Run: Send + Sync {
     fn track_passage(&mut self, sections: Vec<Vec<(Face, f64)>>);
     /// What has passed each section of [`Run::track_passage`] up to the time shown, by the scheme's own fluxes.
     fn passages(&self) -> Vec<Passage>;
+
+    /// Keep maps from now on that say for how long each of these was exceeded; they are among [`Run::peaks`].
+    fn track_durations(&mut self, exceeded: &[Exceeded]);
 
     /// One step, not beyond time `until`; returns its length. It is infinite where nothing can move and `until` is
     /// infinite: the state is final.

@@ -259,3 +259,56 @@ fn places_that_are_not_there_are_refused_by_their_key() {
     refused("file = \"road.geojson\"", "", &["section[0]", "exactly one of line, file"]);
     refused("every = 2.0", "every = 2.0\nseries_every = -1.0", &["output.series_every", "> 0"]);
 }
+
+#[test]
+fn durations_are_the_times_between_the_steps_at_which_a_gauge_crosses() {
+    let folder = tempfile::tempdir().unwrap();
+    let text = mountain(folder.path()).replace(
+        "every = 2.0",
+        "every = 1000.0\ndurations = { thickness = 0.3, speed = 4.0, pressure = 10.0 }\nthreshold = 0.05",
+    );
+    let file = run(folder.path(), &text);
+    let gauges = table(folder.path(), "gauges.csv");
+    let (thickness, end) = (of(&gauges, "road", "thickness"), *gauges.times.last().unwrap());
+    for (what, limit) in [("thickness", 0.3), ("speed", 4.0), ("pressure", 10.0)] {
+        let (values_of, name) = (of(&gauges, "road", what), format!("duration_{what}"));
+        let map = values(&file, &name)[20 * 30 + 15];
+        // Without frames between them all lines are those of steps.
+        let above = |k: usize| values_of[k] > limit && thickness[k] > 0.05;
+        let mut exact = 0.0;
+        for k in 0..gauges.times.len() {
+            let next = gauges.times.get(k + 1).copied().unwrap_or(end);
+            exact += if above(k) { next - gauges.times[k] } else { 0.0 };
+        }
+        assert!((map - exact).abs() < 1e-12 * end && map > 0.5, "{what}: {map} {exact}");
+        let kept = file.global_attribute(&format!("{name}_threshold")).unwrap().value.as_string();
+        assert_eq!(kept.and_then(|text| text.parse().ok()), Some(limit));
+    }
+}
+
+#[test]
+fn a_region_of_a_terrain_gives_the_cells_in_it() {
+    let folder = tempfile::tempdir().unwrap();
+    let text = mountain(folder.path());
+    let text = text.split("[[gauge]]").next().unwrap().to_owned();
+    let cut = |region: &str| {
+        text.replace("crs = \"EPSG:31287\"", &format!("crs = \"EPSG:31287\"\nregion = {region}"))
+    };
+    let file = run(folder.path(), &cut("[1015.0, 1135.0, 2000.0, 2290.0]"));
+    let (x, y, bed) = (values(&file, "x"), values(&file, "y"), values(&file, "bed"));
+    assert_eq!((x.len(), y.len()), (24, 58));
+    assert_eq!((x[0], y[0], bed[0]), (1017.5, 2002.5, 500.0));
+    let refused = |region: &str, part: &str| {
+        std::fs::write(folder.path().join("bad.toml"), cut(region)).unwrap();
+        let checked = Case::read(folder.path().join("bad.toml")).and_then(|case| case.check());
+        let message = match checked {
+            Ok(checked) => format!("{:?}", checked.describe().unwrap_err()),
+            Err(error) => format!("{error:?}"),
+        };
+        assert!(message.contains("terrain.region") && message.contains(part), "{message}");
+    };
+    refused("[1135.0, 1015.0, 2000.0, 2290.0]", "has no inside");
+    refused("[0.0, 10.0, 2000.0, 2290.0]", "no cell of the raster lies in it");
+    refused("[1060.0, 1069.0, 2000.0, 2290.0]", "at least 3 along each side");
+    refused("[1000.0, 1015.0, 2000.0, 2015.0]", "none of its cells has an elevation");
+}

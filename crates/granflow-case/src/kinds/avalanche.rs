@@ -28,7 +28,7 @@ pub const GRAVITY: f64 = 9.81;
 pub(super) const MODEL: &str = "savage_hutter";
 
 /// Keys that not every model has and both kinds of avalanches know.
-pub(super) const KEYS: [&str; 8] = [
+pub(super) const KEYS: [&str; 9] = [
     "material",
     "scheme.film",
     "time.rest_speed",
@@ -37,6 +37,7 @@ pub(super) const KEYS: [&str; 8] = [
     "gauge",
     "section",
     "output.series_every",
+    "output.durations",
 ];
 
 /// What `time.until` may be.

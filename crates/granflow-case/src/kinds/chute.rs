@@ -190,6 +190,14 @@ impl Written for Words {
         self.check_published(look, scheme.name)?;
         let ends = time.check(look, scheme.name, TRICKLE)?;
         let written = output.check(look, &ends, &WRITTEN)?;
+        if output.durations.is_some_and(|durations| durations.pressure.is_some()) {
+            let message = "there is no pressure on a chute, only on [terrain]";
+            return Err(look.fault(
+                "output.durations.pressure",
+                message,
+                "write a threshold of the speed instead",
+            ));
+        }
         let watched = watched::check(
             look,
             &self.gauge,
@@ -278,10 +286,10 @@ impl Initial {
 const WRITTEN: Defaults = Defaults { files: ON_A_GRID, precision: Precision::F64, threshold: THRESHOLD };
 
 /// Keys that not every model has.
-const KEYS: [&str; 12] = {
-    let [material, film, rest_speed, trickle, stop, gauge, section, series] = avalanche::KEYS;
+const KEYS: [&str; 13] = {
+    let [material, film, rest_speed, trickle, stop, gauge, section, series, durations] = avalanche::KEYS;
     let [h, u, v] = ["initial.thickness", "initial.velocity_x", "initial.velocity_y"];
-    [material, film, rest_speed, trickle, stop, gauge, section, series, "grid.boundary", h, u, v]
+    [material, film, rest_speed, trickle, stop, gauge, section, series, durations, "grid.boundary", h, u, v]
 };
 
 /// Keys of other kinds.

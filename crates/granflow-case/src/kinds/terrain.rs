@@ -41,6 +41,8 @@ pub struct Plan {
     pub dem: PathBuf,
     /// Coordinate reference system where the file has none.
     pub crs: Option<String>,
+    /// The part of the raster that is computed on, [x0, x1, y0, y1], if not all.
+    pub region: Option<[f64; 4]>,
     /// Size of the cells, if the raster is to be resampled.
     pub cell: Option<f64>,
     /// Span of the window that gradient and curvature of the bed come from, `None` for no curvature in the friction.
@@ -157,6 +159,7 @@ impl Written for Words {
         let kind = Kind::Terrain(Plan {
             dem: look.locate(&terrain.dem),
             crs: terrain.crs.clone(),
+            region: terrain.region,
             cell: terrain.cell,
             curvature,
             releases,
@@ -214,9 +217,9 @@ const WRITTEN: Defaults = Defaults {
 };
 
 /// Keys that not every model has.
-const KEYS: [&str; 10] = {
-    let [material, film, rest_speed, trickle, stop, gauge, section, series] = avalanche::KEYS;
-    [material, film, rest_speed, trickle, stop, gauge, section, series, "terrain", "release"]
+const KEYS: [&str; 11] = {
+    let [material, film, rest_speed, trickle, stop, gauge, section, series, durations] = avalanche::KEYS;
+    [material, film, rest_speed, trickle, stop, gauge, section, series, durations, "terrain", "release"]
 };
 
 /// A key that only a scaled case has.

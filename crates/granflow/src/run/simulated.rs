@@ -1,5 +1,6 @@
 //! A simulation of the engine as a [`Run`]: what a model adds to its scheme is its [`Physics`].
 
+use super::durations::{AT_ONCE, Duration as Exceedance, Exceeded, What};
 use super::passage::Passages;
 use super::{Face, Failure, FieldView, Maps, Passage, Record, Run, Saved, Totals, trickle};
 use crate::model::Plane;
@@ -115,6 +116,8 @@ pub struct Simulated<const D: usize, P: Physics<D>> {
     tracks_energy: bool,
     /// Thickness of a trickle, if that is looked for.
     trickle: Option<f64>,
+    /// For how long thresholds were exceeded.
+    durations: Vec<Exceedance>,
     /// What passes sections, where there are some.
     passages: Passages,
     /// The drift of the step before [`Run::restore`], until the next step.
@@ -146,6 +149,7 @@ impl<const D: usize, P: Physics<D>> Simulated<D, P> {
             record,
             tracks_energy: false,
             trickle: None,
+            durations: Vec::new(),
             passages: Passages::default(),
             restored_drift: None,
         }
@@ -155,6 +159,47 @@ impl<const D: usize, P: Physics<D>> Simulated<D, P> {
     fn note_energy(&mut self) {
         self.record.energy = self.simulation.totals().energy;
         self.record.peak_energy = self.record.peak_energy.max(self.record.energy);
+    }
+
+    /// Take the state as it stands into the maps of durations.
+    fn note_durations(&mut self) {
+        let time = self.simulation.time();
+        let mut durations = std::mem::take(&mut self.durations);
+        for duration in &mut durations {
+            let exceeded = duration.exceeded;
+            duration.take(time, |from, above| self.exceeds(exceeded, from, above));
+        }
+        self.durations = durations;
+    }
+
+    /// Which cells from one on, at most [`AT_ONCE`], are above a threshold.
+    fn exceeds(&self, Exceeded { what, threshold }: Exceeded, from: usize, above: &mut [bool]) {
+        let mut numbers = [[0.0; AT_ONCE]; 3];
+        let mut read = |name: &str, into: usize| match self.fields.iter().find(|field| field.name == name) {
+            Some(field) => {
+                self.value(field, from, &mut numbers[into][..above.len()]);
+                true
+            }
+            None => false,
+        };
+        let (_, along) = (read("thickness", 0), read("speed", 1));
+        let components = !along && (read("velocity_x", 1), read("velocity_y", 2)).0;
+        let [thickness, u, v] = &numbers;
+        let least = self.physics.threshold();
+        for (k, above) in above.iter_mut().enumerate() {
+            let speed = if components { u[k].hypot(v[k]) } else { u[k] };
+            *above = match what {
+                What::Thickness => thickness[k] > threshold,
+                What::Speed => thickness[k] > least && speed > threshold,
+                What::Pressure => thickness[k] > least && self.plane.domain.pressure(speed) > threshold,
+            };
+        }
+    }
+
+    /// The maps of durations up to the present time.
+    fn exceedances(&self) -> Maps {
+        let time = self.simulation.time();
+        self.durations.iter().map(|duration| (duration.exceeded.what.map(), duration.map(time))).collect()
     }
 
     /// Shape of a field: rows and columns.
@@ -207,6 +252,11 @@ impl<const D: usize, P: Physics<D>> Run for Simulated<D, P> {
     fn track_passage(&mut self, sections: Vec<Vec<(Face, f64)>>) {
         self.passages = Passages::through(sections);
     }
+    fn track_durations(&mut self, exceeded: &[Exceeded]) {
+        let cells = self.plane.cells();
+        self.durations = exceeded.iter().map(|one| Exceedance::new(*one, cells)).collect();
+        self.note_durations();
+    }
     fn passages(&self) -> Vec<Passage> {
         self.passages.at(self.simulation.time())
     }
@@ -235,6 +285,7 @@ impl<const D: usize, P: Physics<D>> Run for Simulated<D, P> {
         self.restored_drift = None;
         let dt = advanced?;
         self.passages.take(&mut self.simulation, begin);
+        self.note_durations();
         self.record.peak_speed = self.record.peak_speed.max(self.simulation.speed());
         if self.tracks_energy {
             self.simulation.take_sums();
@@ -288,12 +339,15 @@ impl<const D: usize, P: Physics<D>> Run for Simulated<D, P> {
         let (layout, maps) = (self.simulation.layout(), self.simulation.maps());
         let named = maps.into_iter().flat_map(granflow_engine::Maps::named);
         let known = named.filter(|(name, _)| self.plane.model().quantity(name).is_some());
-        known.map(|(name, map)| (name, layout.unpadded(map))).collect()
+        let peaks = known.map(|(name, map)| (name, layout.unpadded(map)));
+        peaks.chain(self.exceedances()).collect()
     }
     fn into_peaks(self: Box<Self>) -> Maps {
+        let exceedances = self.exceedances();
         let Simulated { simulation, plane, .. } = *self;
         let mut maps = simulation.into_maps();
         maps.retain(|(name, _)| plane.model().quantity(name).is_some());
+        maps.extend(exceedances);
         maps
     }
     fn place(&self) -> Plane {
@@ -328,11 +382,12 @@ impl<const D: usize, P: Physics<D>> Run for Simulated<D, P> {
             drift: self.drift().to_vec(),
             model: self.physics.save(),
             passed: self.passages.save(),
+            durations: self.durations.iter().flat_map(Exceedance::arrays).map(Cow::Borrowed).collect(),
             record: self.record,
         }
     }
     fn restore(&mut self, saved: Saved<'static>) -> Result<(), String> {
-        let Saved { cells, clock, state, mut maps, at_rest, drift, model, passed, record } = saved;
+        let Saved { cells, clock, state, mut maps, at_rest, drift, model, passed, durations, record } = saved;
         let own = self.stepper().cells();
         if cells != own {
             let [[x, y], [own_x, own_y]] = [cells, own];
@@ -357,6 +412,15 @@ impl<const D: usize, P: Physics<D>> Run for Simulated<D, P> {
         }
         if !self.passages.restore(&passed, self.simulation.time()) {
             return Err("it has another number of sections".to_owned());
+        }
+        let mut arrays = durations.into_iter().map(Cow::into_owned);
+        for duration in &mut self.durations {
+            let (Some(ended), Some(since)) = (arrays.next(), arrays.next()) else {
+                return Err("it has fewer maps of durations".to_owned());
+            };
+            if !duration.restore([ended, since]) {
+                return Err("its maps of durations have another shape".to_owned());
+            }
         }
         self.restored_drift = Some(drift);
         if at_rest {

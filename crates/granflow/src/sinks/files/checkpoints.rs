@@ -18,7 +18,7 @@ pub(super) fn of<'a>(
     due: [f64; 3],
     ended: Option<StopReason>,
 ) -> Checkpoint<'a> {
-    let Saved { cells, clock, state, maps, at_rest, drift, model, passed, record } = run.save();
+    let Saved { cells, clock, state, maps, at_rest, drift, model, passed, durations, record } = run.save();
     let mut scalars: Vec<(String, f64)> = vec![
         ("peak_speed".into(), record.peak_speed),
         ("peak_energy".into(), record.peak_energy),
@@ -39,6 +39,8 @@ pub(super) fn of<'a>(
     let mut arrays: Vec<(String, Numbers)> =
         state.map(|(k, part)| (format!("state_{k}"), Numbers::Double(part))).collect();
     arrays.extend(maps.into_iter().map(|(name, map)| (name.to_owned(), Numbers::Single(map))));
+    let durations = durations.into_iter().enumerate();
+    arrays.extend(durations.map(|(k, part)| (format!("duration_{k}"), Numbers::Double(part))));
     Checkpoint { origin: origin.clone(), ended, step: run.steps(), time: run.time(), scalars, arrays }
 }
 
@@ -75,9 +77,10 @@ pub(super) fn read(path: &Path, origin: &Origin, run: &dyn Run) -> Result<Taken,
     let names: Vec<&'static str> = now.maps.iter().map(|(name, _)| *name).collect();
     let parts = now.state.len();
     let state = (0..parts).map_while(|k| saved.take(&format!("state_{k}"))).map(Cow::Owned).collect();
+    let durations = (0..).map_while(|k| saved.take(&format!("duration_{k}"))).map(Cow::Owned).collect();
     let single = |values: Vec<f64>| Cow::Owned(values.into_iter().map(|value| value as f32).collect());
     let maps = names.into_iter().filter_map(|name| Some((name, single(saved.take(name)?)))).collect();
     let ended = saved.ended;
-    let saved = Saved { cells, clock, state, maps, at_rest, drift, model, passed, record };
+    let saved = Saved { cells, clock, state, maps, at_rest, drift, model, passed, durations, record };
     Ok(Taken { saved, due, marks, ended })
 }

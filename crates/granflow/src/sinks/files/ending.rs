@@ -127,6 +127,14 @@ fn summary(files: &Files, run: &dyn Run, stop_reason: StopReason) -> Summary {
     for (name, value) in run.numbers() {
         summary.add(&name, value);
     }
+    let durations = plan.output.durations;
+    for (name, threshold) in
+        [("thickness", durations.thickness), ("speed", durations.speed), ("pressure", durations.pressure)]
+    {
+        if let Some(threshold) = threshold {
+            summary.add(&format!("duration_{name}_threshold"), threshold);
+        }
+    }
     if let Some(Until::Steady { rate }) = plan.ends.until {
         summary.add("steady_rate", rate);
     }

@@ -6,14 +6,14 @@ use super::terrain::{self, Loaded};
 use crate::StartError;
 use crate::describe::{Line, axis, case, effort, range};
 use crate::memory::Size;
-use crate::model::{At, Kind};
+use crate::model::{At, Kind, Quantity};
 use crate::run::Run;
 use crate::watch::Watch;
 use granflow_case::avalanche::Material;
 use granflow_case::chute::Plan as OnChute;
 #[cfg(feature = "geo")]
 use granflow_case::terrain::{Plan as OnTerrain, TerrainScheme};
-use granflow_case::{Axis, Frames, RunPlan, Side};
+use granflow_case::{Axis, Durations, Frames, RunPlan, Side};
 #[cfg(feature = "geo")]
 use granflow_geo::raster::Crs;
 #[cfg(feature = "geo")]
@@ -72,9 +72,14 @@ fn start(run: &RunPlan, start: &mut dyn Run, beside: f64, pictures: f64) -> Resu
     let bytes = start.bytes_per_cell(instants) as f64;
     let plane = start.plane();
     let line = plane.dimensions() == 1;
-    let maps = plane.model().of_kind(Kind::Map).filter(|map| map.at == At::Cells).count();
+    let Durations { thickness, speed, pressure } = run.output.durations;
+    let durations = [thickness, speed, pressure].iter().flatten().count();
+    let kept = |map: &Quantity| map.at == At::Cells && !map.name.starts_with("duration_");
+    let maps = plane.model().of_kind(Kind::Map).filter(|map| kept(map)).count() + durations;
+    // Two arrays for each map of durations.
+    let bytes = bytes + 16.0 * durations as f64;
     // Components of the state, and four maps in single precision.
-    let saved = 8.0 * start.stepper().components() as f64 + 16.0;
+    let saved = 8.0 * start.stepper().components() as f64 + 16.0 + 16.0 * durations as f64;
     let drawn = if line { PROFILES } else { pictures };
     let frame = plane.series().iter().map(|field| field.length).sum();
     let size = Size {

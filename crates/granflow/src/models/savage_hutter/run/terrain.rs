@@ -167,7 +167,7 @@ fn bed(run: &RunPlan, plan: &Plan, remarks: &mut Vec<Remark>) -> Result<(Raster,
     };
     let reading = Reading::of(&plan.dem, crs.as_ref())?;
     remarks.extend(reading.notes);
-    let bed = reading.raster;
+    let bed = part(run, plan, reading.raster)?;
     if bed.crs.is_none() {
         remarks.push(Remark::Note(format!(
             "{}: it says no coordinate reference system; its coordinates were taken as metres (crs = \"EPSG:xxxx\" in \
@@ -186,6 +186,27 @@ fn bed(run: &RunPlan, plan: &Plan, remarks: &mut Vec<Remark>) -> Result<(Raster,
         return Err(run.fault("terrain.cell", message, cure).into());
     }
     Ok((bed.resample(cell), crs))
+}
+
+/// The part of the elevation model that the case asks for.
+fn part(run: &RunPlan, plan: &Plan, whole: Raster) -> Result<Raster, StartError> {
+    let Some(region) = plan.region else { return Ok(whole) };
+    let refused = |message: String| {
+        let (x, y) = ([whole.west, whole.east()], [whole.south, whole.north()]);
+        let cure = format!("the raster has x {} to {}, y {} to {}", x[0], x[1], y[0], y[1]);
+        StartError::from(run.fault("terrain.region", message, &cure))
+    };
+    let part = whole.cropped(region).ok_or_else(|| refused("no cell of the raster lies in it".to_owned()))?;
+    let Raster { columns, rows, .. } = part;
+    if columns < 3 || rows < 3 {
+        return Err(refused(format!(
+            "it leaves {columns} x {rows} cells, a run needs at least 3 along each side"
+        )));
+    }
+    if part.range().is_none() {
+        return Err(refused("none of its cells has an elevation".to_owned()));
+    }
+    Ok(part)
 }
 
 /// The bed with the window of the case around its cells.
