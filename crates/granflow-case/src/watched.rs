@@ -31,7 +31,7 @@ impl Watched {
 pub struct Gauge {
     /// Its name in the files.
     pub name: String,
-    /// Where: [x, y], in one dimension [x].
+    /// Where: two coordinates, in one dimension one.
     pub at: Vec<f64>,
 }
 
