@@ -32,6 +32,7 @@ mod boundary;
 mod case;
 mod checked;
 mod choice;
+mod durations;
 mod fault;
 mod file_kind;
 mod files;
@@ -50,10 +51,12 @@ mod region;
 mod source;
 mod stepping;
 mod units;
+mod watched;
 
 pub use boundary::Side;
 pub use case::Case;
 pub use checked::Checked;
+pub use durations::Durations;
 pub use fault::{CaseError, CaseErrorKind};
 pub use file_kind::FileKind;
 pub use files::{FileAccess, NoFiles, Outline};
@@ -63,6 +66,7 @@ pub use kinds::*;
 pub use nearest::nearest;
 pub use plan::{Ends, Frames, OutputPlan, RunPlan, Stepping, Until};
 pub use precision::Precision;
+pub use watched::{Gauge, Line, Section, Watched};
 
 #[cfg(test)]
 mod tests;

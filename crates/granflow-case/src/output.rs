@@ -1,5 +1,6 @@
 //! `[output]`: which files, how many instants, how many digits, and how thick a layer must be to count.
 
+use crate::durations::Durations;
 use crate::fault::CaseError;
 use crate::file_kind::FileKind;
 use crate::look::Look;
@@ -24,6 +25,12 @@ pub struct Output {
     /// Precision of the numbers in the files (default f64 on a grid, f32 on terrain).
     #[serde(skip_serializing_if = "Option::is_none")]
     pub precision: Option<Precision>,
+    /// Simulated time between two lines of gauges.csv and sections.csv (default: a line after every step).
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub series_every: Option<f64>,
+    /// Thresholds of which maps say for how long they were exceeded.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub durations: Option<Durations>,
     /// Thickness normal to the bed that a layer must exceed to count in peaks, times and outlines (default
     /// 0.01 m on terrain, 1e-3 on a chute).
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -66,11 +73,16 @@ impl Output {
             (None, None, None, None) => Frames::Ends,
         };
         self.bounded(look, frames, ends)?;
+        let durations = self.durations.unwrap_or_default();
+        look.not_negative("output.durations.thickness", durations.thickness)?;
+        look.not_negative("output.durations.speed", durations.speed)?;
+        look.not_negative("output.durations.pressure", durations.pressure)?;
         Ok(OutputPlan {
             frames,
             files: self.kinds(look, defaults.files)?,
             precision: self.precision.unwrap_or(defaults.precision),
             threshold: self.threshold.unwrap_or(defaults.threshold),
+            durations,
         })
     }
 

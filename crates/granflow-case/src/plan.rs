@@ -2,10 +2,12 @@
 
 use std::path::{Path, PathBuf};
 
+use super::durations::Durations;
 use super::fault::CaseError;
 use super::file_kind::FileKind;
 use super::precision::Precision;
 use super::source::Source;
+use super::watched::Watched;
 
 /// The part of a checked case that every kind has.
 #[derive(Debug, Clone)]
@@ -24,6 +26,8 @@ pub struct RunPlan {
     pub ends: Ends,
     /// What is written.
     pub output: OutputPlan,
+    /// Where it is looked at.
+    pub watched: Watched,
     /// What is allowed but may surprise, one sentence each.
     pub notes: Vec<String>,
     /// The files that the case names, seen from the working folder.
@@ -83,6 +87,8 @@ pub struct OutputPlan {
     /// Thickness normal to the bed that a layer must exceed to count in peaks, times and outlines (units of
     /// the thickness); 0 for a sandpile, which has none of these.
     pub threshold: f64,
+    /// Thresholds of which maps say for how long they were exceeded.
+    pub durations: Durations,
 }
 
 /// What ends a run; the first that is reached does.

@@ -6,6 +6,7 @@ use std::process::ExitCode;
 
 use granflow::StartError;
 use granflow::case::{CaseError, CaseErrorKind};
+use granflow::compare::CompareError;
 use granflow::results::FilesError;
 use granflow::session::RunError;
 use granflow::sinks::BeginError;
@@ -102,6 +103,7 @@ impl From<RunError> for Failure {
     fn from(error: RunError) -> Self {
         match error {
             RunError::Start(error) => error.into(),
+            RunError::Begin(BeginError::Watch(error)) => (*error).into(),
             RunError::Begin(BeginError::Thread(_)) | RunError::Threads(_) => {
                 Self::usage(error.to_string(), "try a smaller --threads")
             }
@@ -114,6 +116,23 @@ impl From<RunError> for Failure {
 impl From<FilesError> for Failure {
     fn from(error: FilesError) -> Self {
         Self::File(error.to_string())
+    }
+}
+
+impl From<CompareError> for Failure {
+    fn from(error: CompareError) -> Self {
+        let message = error.to_string();
+        match error {
+            CompareError::Threshold { .. }
+            | CompareError::TooThin { .. }
+            | CompareError::Nothing { .. }
+            | CompareError::Apart { .. }
+            | CompareError::NoMap { .. }
+            | CompareError::NoOutline { .. } => {
+                Self::usage(message, "granflow compare --help says what can be compared")
+            }
+            _ => Self::File(message),
+        }
     }
 }
 

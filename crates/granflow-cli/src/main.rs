@@ -8,6 +8,7 @@ use granflow::{Case, Checked};
 
 mod bench;
 mod check;
+mod compare;
 mod demo;
 mod failure;
 mod interrupt;
@@ -120,6 +121,11 @@ enum Command {
         #[arg(long, value_name = "DIR")]
         out: Option<PathBuf>,
     },
+    /// Says how well a run meets another one, or what was mapped
+    #[command(
+        after_help = "B is what A is held against: what only B has is missed, what only A has is false. Differences are A minus B."
+    )]
+    Compare(compare::Options),
     /// Measures what a step of each scheme costs on this machine
     #[command(
         after_help = "Medians of five repeats of 0.3 s, every cell wet and moving. The triad of the same run says what the memory can do."
@@ -157,6 +163,7 @@ fn act(command: Command) -> Result<(), Failure> {
         Command::Reproduce { paper, out } => reproduce::reproduce(paper.as_deref(), &out),
         Command::Verify { benchmarks, out, quick } => verify::verify(&benchmarks, &out, quick),
         Command::Plot { results, out } => plot::plot(&results, out.as_deref()),
+        Command::Compare(options) => compare::compare(&options),
         Command::Bench(options) => bench::bench(&options),
         Command::Schema => schema::schema(),
         Command::Demo { out } => demo::demo(&out),

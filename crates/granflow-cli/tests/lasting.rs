@@ -37,7 +37,9 @@ grid.y = { from = -4.0, to = 4.0, cells = 140 }
 material = { slope = "10 deg", friction.coulomb = { angle = "22 deg" } }
 initial.thickness.cap = { height = 1.0, radius = 2.0 }
 time = { until = "rest", end = 40.0 }
-output = { every = 0.25, files = ["netcdf", "csv"] }
+output = { every = 0.25, files = ["netcdf", "csv"], durations = { thickness = 0.1, speed = 0.5 } }
+gauge = [{ name = "foot", at = [2.5, 0.1] }, { name = "side", at = [0.5, 1.0] }]
+section = [{ name = "weir", line = [[1.5, -4.0], [1.5, 4.0]] }]
 "#;
 
 const PILE: &str = r#"
@@ -114,6 +116,8 @@ impl Long {
 /// All that a run leaves and that does not tell the time of day.
 struct Left {
     ledger: Vec<u8>,
+    /// gauges.csv and sections.csv, where they are.
+    series: Vec<Vec<u8>>,
     /// The bytes of every variable of `result.nc`, by name.
     variables: Vec<(String, Vec<u8>)>,
     summary: serde_json::Value,
@@ -130,11 +134,13 @@ impl Left {
         for clock in ["wall_seconds", "stepping_seconds", "cell_updates_per_second", "threads"] {
             summary.as_object_mut().unwrap().remove(clock);
         }
-        Left { ledger: fs::read(out.join("mass.csv")).unwrap(), variables, summary }
+        let series = ["gauges.csv", "sections.csv"].map(|name| fs::read(out.join(name)).unwrap_or_default());
+        Left { ledger: fs::read(out.join("mass.csv")).unwrap(), series: series.into(), variables, summary }
     }
 
     fn must_be(&self, other: &Left, what: &str) {
         assert!(self.ledger == other.ledger, "{what}: mass.csv differs");
+        assert!(self.series == other.series, "{what}: gauges.csv or sections.csv differs");
         assert_eq!(self.variables.len(), other.variables.len(), "{what}");
         for (one, two) in self.variables.iter().zip(&other.variables) {
             assert!(one == two, "{what}: {} differs", one.0);

@@ -1,7 +1,7 @@
 //! The figures: every picture of a run or a paper, drawn to PNG without fonts or graphics of the system.
 //!
 //! Each kind is a struct of plain slices and texts that implements [`Figure`]: [`Profiles`], [`HeatMap`] (a field over a
-//! plane or over space and time), [`Surface`], [`Map`], [`Section`], [`History`], [`Convergence`]. The typeface is compiled
+//! plane or over space and time), [`Surface`], [`Map`], [`Parts`], [`Section`], [`History`], [`Convergence`]. The typeface is compiled
 //! in, so the same data give the same bytes on every machine.
 //!
 //! ```
@@ -32,6 +32,7 @@ mod history;
 mod lattice;
 mod legend;
 mod map;
+mod parts;
 mod perspective;
 mod relief;
 mod rows;
@@ -52,6 +53,7 @@ pub use curves::{Curve, Fill, Profiles, Style};
 pub use heat::{Frame, HeatMap, Levels, Outline};
 pub use history::{History, HistoryPanel};
 pub use map::{Map, Overlay};
+pub use parts::{Part, Parts};
 pub use relief::Relief;
 pub use section::Section;
 pub use surface::{Paint, Surface};

@@ -4,9 +4,11 @@
 //! polygons, rasters and caps into volume per plan area.
 
 mod cells;
+mod line;
 pub mod raster;
 pub mod release;
 mod remark;
 pub mod terrain;
 
+pub use line::line;
 pub use remark::Remark;

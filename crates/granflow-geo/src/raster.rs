@@ -15,6 +15,7 @@ mod wkt;
 
 pub use crs::{Crs, CrsError, well_known_text};
 pub use error::RasterError;
+pub use resample::intervals;
 pub use system::Comparison;
 
 use declared::Declared;

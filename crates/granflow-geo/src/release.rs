@@ -10,11 +10,13 @@ mod table;
 mod vector;
 mod zones;
 
+pub use coverage::shares as covered_shares;
 pub use error::ReleaseError;
 pub use inlets::along;
 pub use outlines::Outlines;
 pub use sparse::Sparse;
 pub use vector::Layer;
+pub(crate) use vector::named as named_system;
 
 use crate::Remark;
 use crate::raster::{Comparison, Crs, Raster, uncertain};
@@ -92,6 +94,23 @@ impl Layer {
             outlines.extend(sound(&self.name, feature.number, feature.polygons)?);
         }
         Ok(outlines)
+    }
+
+    /// What the features have under the name of an attribute, each once, in the order of the file.
+    pub fn values(&self, attribute: &str) -> Vec<&str> {
+        let mut values = Vec::new();
+        for value in self.features.iter().map(|feature| feature.value(attribute)) {
+            if !values.contains(&value) {
+                values.push(value);
+            }
+        }
+        values
+    }
+
+    /// The features alone that have this value of an attribute.
+    pub fn only(mut self, attribute: &str, value: &str) -> Layer {
+        self.features.retain(|feature| feature.value(attribute) == value);
+        self
     }
 
     /// The coordinate reference system, where the file or the `.prj` beside it says one.

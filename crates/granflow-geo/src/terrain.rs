@@ -42,7 +42,7 @@ pub struct Terrain {
     windows: Windows,
     /// The fits of all cells, where windows are so wide that one by one they take too long.
     wide: Option<Arc<[Fit]>>,
-    curved: bool,
+    curvature: Curvature,
 }
 
 /// How steep a terrain is.
@@ -65,7 +65,12 @@ impl Terrain {
         let m = curvature.half_width(bed.cell);
         let windows = Windows::new(m, bed.cell);
         let wide = (m > wide::NARROW).then(|| wide::fits(&bed, m).into());
-        Terrain { bed, windows, wide, curved: curvature != Curvature::Off }
+        Terrain { bed, windows, wide, curvature }
+    }
+
+    /// The length over which its derivatives are taken.
+    pub fn curvature(&self) -> Curvature {
+        self.curvature
     }
 
     /// Fits b + b_x x + b_y y + b_xx x^2/2 + b_xy x y + b_yy y^2/2 around the cell (column, row) by least squares, all
@@ -80,7 +85,10 @@ impl Terrain {
             Some(fits) => fits[cell[1] * self.bed.columns + cell[0]],
             None => self.windows.fit(&self.bed, cell),
         };
-        if self.curved { fit } else { Fit { hessian: [0.0; 3], ..fit } }
+        match self.curvature {
+            Curvature::Length(_) => fit,
+            Curvature::Off => Fit { hessian: [0.0; 3], ..fit },
+        }
     }
 
     /// What `both` makes of the values of the fits of all cells with values.

@@ -2,7 +2,7 @@
 
 use crate::disk::Disk;
 use crate::models;
-use crate::run::Run;
+use crate::run::{Exceeded, Run, What};
 pub use crate::start_error::StartError;
 pub use granflow_case::*;
 use std::ops::Deref;
@@ -80,7 +80,9 @@ impl Checked {
     /// [`StartError`] at the first file or key that cannot be used.
     pub fn start(self) -> Result<Box<dyn Run>, StartError> {
         let granflow_case::Checked { run, kind } = self.0;
-        models::start(&run, kind)
+        let mut started = models::start(&run, kind)?;
+        started.track_durations(&exceeded(&run.output.durations));
+        Ok(started)
     }
     /// What would be computed, and how large it is: names and values, one line each.
     ///
@@ -90,6 +92,15 @@ impl Checked {
         let granflow_case::Checked { run, kind } = self.0;
         models::describe(&run, kind)
     }
+}
+
+/// The thresholds of which maps say for how long they were exceeded.
+fn exceeded(durations: &Durations) -> Vec<Exceeded> {
+    let Durations { thickness, speed, pressure } = *durations;
+    [(What::Thickness, thickness), (What::Speed, speed), (What::Pressure, pressure)]
+        .into_iter()
+        .filter_map(|(what, threshold)| Some(Exceeded { what, threshold: threshold? }))
+        .collect()
 }
 
 /// The JSON Schema of the case file, with the kinds of files that can be written.

@@ -54,8 +54,10 @@
 //! | [`run`] | a run one can hold: stepped, looked into, saved; the loop to an end; models of your own by [`run::Physics`] |
 //! | [`sinks`] | what is shown a run after every step: memory, files, a callback |
 //! | [`session`] | from a checked case to its files, as `granflow run` does it |
+//! | [`watch`] | gauges and sections of a case on the cells of its run |
 //! | [`model`], [`models`] | a model as files and figures see it; those of this library |
 //! | [`results`], [`output`] | what a run leaves; one file per format |
+//! | [`compare`](mod@compare) | how well a run meets another one, or what was mapped |
 //! | [`speed`] | what a step costs: runs to measure by, and what the memory can do |
 //! | [`scheme`], [`real`], [`limiter`], [`time`], [`savage_hutter`], [`hadeler_kuttler`] | from `granflow-model`: what the papers say, as pointwise functions |
 //! | [`grid`], [`mod@kernel`], [`kernels`], [`simulation`] | from `granflow-engine`: what steps a scheme |
@@ -71,6 +73,8 @@
 pub mod build;
 pub mod case;
 mod check_value;
+#[cfg(all(feature = "figures", feature = "geo"))]
+pub mod compare;
 pub mod describe;
 mod disk;
 mod entry;
@@ -90,6 +94,7 @@ pub mod sinks;
 pub mod speed;
 mod start_error;
 mod stop_reason;
+pub mod watch;
 
 pub use case::{Case, Checked};
 pub use disk::Disk;

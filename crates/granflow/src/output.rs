@@ -14,6 +14,7 @@ pub mod frames;
 mod hdf5;
 pub mod inputs;
 pub mod ledger;
+pub mod lines;
 pub mod mark;
 pub mod netcdf;
 #[cfg(feature = "geo")]

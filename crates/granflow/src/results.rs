@@ -7,6 +7,7 @@ mod format;
 pub(crate) mod formats;
 #[cfg(feature = "figures")]
 mod story;
+mod watched;
 
 pub use crate::model::{Maps, Plane};
 pub use dataset::{About, dataset};
@@ -19,6 +20,7 @@ use crate::output;
 use crate::output::folder::Folder;
 use crate::output::frames::Frames;
 use crate::output::ledger::Entry;
+use crate::output::lines::Table;
 use crate::output::netcdf::{Values, history};
 use crate::output::summary::Summary;
 use granflow_case::FileKind;
@@ -47,6 +49,8 @@ pub struct Finished {
     /// Maps of the whole run and of its end, by the names of the model's quantities; x fastest, the first row in
     /// the south.
     pub maps: Maps,
+    /// The tables of gauges and of sections, where there are some.
+    pub series: [Option<PathBuf>; 2],
     /// The run in numbers.
     pub summary: Summary,
 }
@@ -78,7 +82,17 @@ impl Finished {
         let times = frames.times().to_vec();
         let result = dataset(&self.plane, frames.precision(), times, series, &self.maps, about);
         let path = self.result();
-        result.map_err(|problem| output::Error::invalid(&path, problem))?.write(&path, Some(&mut frames))
+        let mut result = result.map_err(|problem| output::Error::invalid(&path, problem))?;
+        for name in ["thickness", "speed", "pressure"].map(|what| format!("duration_{what}_threshold")) {
+            let threshold = self.summary.extra(&name);
+            result.attributes.extend(threshold.map(|threshold| (name, threshold.to_string())));
+        }
+        for (table, kind) in self.series.iter().zip([watched::GAUGE, watched::SECTION]) {
+            if let Some(table) = table {
+                watched::add(&mut result, &kind, Table::read(table)?, self.plane.domain.units());
+            }
+        }
+        result.write(&path, Some(&mut frames))
     }
 
     /// Remove the frames, of which `result.nc` has a second copy: nothing more is made of the run. One that was interrupted or

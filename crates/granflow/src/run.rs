@@ -5,10 +5,12 @@
 //! steps a run to one of its [`Ends`] and lets [sinks](crate::sinks) look on.
 
 mod drive;
+mod durations;
 mod entry;
 mod field_view;
 mod frames;
 mod law;
+mod passage;
 mod record;
 mod saved;
 mod simulated;
@@ -19,13 +21,16 @@ mod trickle;
 pub use crate::entry::{Entry, sum};
 pub use crate::stop_reason::StopReason;
 pub use drive::{DriveError, drive, reached};
+pub use durations::{Exceeded, What};
 pub use entry::mass_error;
 pub use field_view::FieldView;
 pub use frames::Frames;
 pub(crate) use frames::after;
 pub use granflow_case::{Ends, Until};
+pub use granflow_engine::simulation::Face;
 pub use granflow_engine::simulation::{Failure, Totals};
 pub use law::{Broken, Laws, check_end, check_state};
+pub use passage::Passage;
 pub use record::Record;
 pub use saved::Saved;
 pub use simulated::{CellOf, Field, Numbers, Physics, Simulated, Value};
@@ -64,6 +69,15 @@ pub trait Run: Send + Sync {
     fn track_energy(&mut self);
     /// Look now and then whether more than a trickle of this thickness moves, for an end at rest but for a trickle.
     fn track_trickle(&mut self, thickness: f64);
+
+    /// Count from now on what passes these sections: each some faces, with 1 where passing towards larger coordinates counts,
+    /// -1 where the other way does.
+    fn track_passage(&mut self, sections: Vec<Vec<(Face, f64)>>);
+    /// What has passed each section of [`Run::track_passage`] up to the time shown, by the scheme's own fluxes.
+    fn passages(&self) -> Vec<Passage>;
+
+    /// Keep maps from now on that say for how long each of these was exceeded; they are among [`Run::peaks`].
+    fn track_durations(&mut self, exceeded: &[Exceeded]);
 
     /// One step, not beyond time `until`; returns its length. It is infinite where nothing can move and `until` is
     /// infinite: the state is final.

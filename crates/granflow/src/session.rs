@@ -7,6 +7,7 @@ use crate::output::inputs::inputs;
 use crate::results::{FilesError, Finished, check_kinds};
 use crate::run::{DriveError, Run, drive};
 use crate::sinks::{BeginError, Callback, Files, Sink, Stop};
+use crate::watch::Watch;
 use crate::{Checked, StartError};
 use granflow_case::RunPlan;
 use std::path::PathBuf;
@@ -98,6 +99,7 @@ impl Checked {
         let started = origin(&plan).map_err(RunError::from).and_then(|origin| {
             let run = self.start()?;
             check_kinds(&plan.output.files, run.plane())?;
+            Watch::of(&plan, &*run)?.notes.iter().for_each(|note| notice(note));
             Ok((origin, run))
         });
         let (origin, mut run) = match started {

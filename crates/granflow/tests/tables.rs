@@ -150,6 +150,7 @@ fn run(name: &str, plane: Plane, full: &[f64], files: &[&str]) -> Finished {
     let mut source = vec![0.5; cells];
     table.blank(&mut source);
     Finished {
+        series: [None, None],
         folder: None,
         directory,
         files: granflow::Disk.kinds().iter().filter(|kind| files.contains(&kind.name)).copied().collect(),

@@ -19,6 +19,7 @@ pub(super) use time::Time;
 use crate::look::Look;
 use crate::plan::{Ends, OutputPlan, RunPlan, Stepping, Until};
 use crate::source::Missing;
+use crate::watched::Watched;
 
 /// Gravity on terrain where nobody says another one \[m/s^2\].
 pub const GRAVITY: f64 = 9.81;
@@ -27,8 +28,17 @@ pub const GRAVITY: f64 = 9.81;
 pub(super) const MODEL: &str = "savage_hutter";
 
 /// Keys that not every model has and both kinds of avalanches know.
-pub(super) const KEYS: [&str; 5] =
-    ["material", "scheme.film", "time.rest_speed", "time.trickle", "time.stop"];
+pub(super) const KEYS: [&str; 9] = [
+    "material",
+    "scheme.film",
+    "time.rest_speed",
+    "time.trickle",
+    "time.stop",
+    "gauge",
+    "section",
+    "output.series_every",
+    "output.durations",
+];
 
 /// What `time.until` may be.
 pub(super) const UNTIL: &[&str] = &["rest"];
@@ -41,7 +51,7 @@ pub(super) fn plan(
     material: &Material,
     stepping: Stepping,
     ends: Ends,
-    output: OutputPlan,
+    (output, watched): (OutputPlan, Watched),
 ) -> RunPlan {
     RunPlan {
         title: title.to_owned(),
@@ -52,6 +62,7 @@ pub(super) fn plan(
         notes: scheme.note().into_iter().chain(ends.note()).chain(slow_rest(material, &ends)).collect(),
         ends,
         output,
+        watched,
         inputs: Vec::new(),
         source: look.source.clone(),
     }

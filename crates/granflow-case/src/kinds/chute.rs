@@ -14,6 +14,7 @@ use crate::plan::{Ends, RunPlan};
 use crate::precision::Precision;
 use crate::quantity::{Quantity, Values};
 use crate::source::Missing;
+use crate::watched::{self, Gauge, SectionWords};
 
 mod slope;
 
@@ -100,6 +101,12 @@ pub(crate) struct Words {
     /// The files.
     #[serde(default)]
     output: Output,
+    /// Places that are looked at.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    gauge: Vec<Gauge>,
+    /// Lines through which the passing mass is counted.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    section: Vec<SectionWords>,
 }
 
 /// A regular grid along x, and along y if the case is two-dimensional, in the case's unit of length.
@@ -188,8 +195,23 @@ impl Written for Words {
         let ends = time.check(look, scheme.name, TRICKLE)?;
         self.check_rest(look, &ends, sides[0], &columns)?;
         let written = output.check(look, &ends, &WRITTEN)?;
+        if output.durations.is_some_and(|durations| durations.pressure.is_some()) {
+            let message = "there is no pressure on a chute, only on [terrain]";
+            return Err(look.fault(
+                "output.durations.pressure",
+                message,
+                "write a threshold of the speed instead",
+            ));
+        }
+        let watched = watched::check(
+            look,
+            &self.gauge,
+            &self.section,
+            output.series_every,
+            1 + usize::from(cells.y.is_some()),
+        )?;
         let initial = initial.check(look, &cells)?;
-        let run = avalanche::plan(look, title, scheme, &material, stepping, ends, written);
+        let run = avalanche::plan(look, title, scheme, &material, stepping, ends, (written, watched));
         let kind = Kind::Chute(Plan {
             grid: cells,
             sides,
@@ -300,10 +322,10 @@ const STATE: f64 = 24.0;
 const WRITTEN: Defaults = Defaults { files: ON_A_GRID, precision: Precision::F64, threshold: THRESHOLD };
 
 /// Keys that not every model has.
-const KEYS: [&str; 9] = {
-    let [material, film, rest_speed, trickle, stop] = avalanche::KEYS;
+const KEYS: [&str; 13] = {
+    let [material, film, rest_speed, trickle, stop, gauge, section, series, durations] = avalanche::KEYS;
     let [h, u, v] = ["initial.thickness", "initial.velocity_x", "initial.velocity_y"];
-    [material, film, rest_speed, trickle, stop, "grid.boundary", h, u, v]
+    [material, film, rest_speed, trickle, stop, gauge, section, series, durations, "grid.boundary", h, u, v]
 };
 
 /// Keys of other kinds.

@@ -12,6 +12,7 @@ use crate::plan::{RunPlan, Until};
 use crate::precision::Precision;
 use crate::quantity::Quantity;
 use crate::source::Missing;
+use crate::watched::Watched;
 
 mod check;
 mod layers;
@@ -144,6 +145,7 @@ impl Written for Words {
             Some(_) => Poured::Plane(Box::new(self.pile(look, waits, &mut notes)?)),
         };
         let run = RunPlan {
+            watched: Watched::default(),
             title: title.clone(),
             model: MODEL,
             scheme: scheme.name.as_str(),

@@ -13,6 +13,7 @@ use crate::output::{Defaults, Output};
 use crate::plan::RunPlan;
 use crate::precision::Precision;
 use crate::source::Missing;
+use crate::watched::{self, Gauge, SectionWords};
 
 mod inflow;
 mod release;
@@ -29,6 +30,9 @@ pub const FILM: f64 = 1e-4;
 /// The threshold on a mountain where nobody says another one \[m\].
 pub const THRESHOLD: f64 = 0.01;
 
+/// The length over which slope and curvature of a mountain are taken where nobody says another one \[m\].
+pub const CURVATURE: f64 = 20.0;
+
 /// The thickness of a trickle on a mountain where nobody says another one \[m\].
 pub const TRICKLE: f64 = 0.01;
 
@@ -39,6 +43,8 @@ pub struct Plan {
     pub dem: PathBuf,
     /// Coordinate reference system where the file has none.
     pub crs: Option<String>,
+    /// The part of the raster that is computed on, [x0, x1, y0, y1], if not all.
+    pub region: Option<[f64; 4]>,
     /// Size of the cells, if the raster is to be resampled.
     pub cell: Option<f64>,
     /// Span of the window that gradient and curvature of the bed come from, `None` for no curvature in the friction.
@@ -95,6 +101,12 @@ pub(crate) struct Words {
     /// The files.
     #[serde(default)]
     output: Output,
+    /// Places that are looked at.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    gauge: Vec<Gauge>,
+    /// Lines through which the passing mass is counted.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    section: Vec<SectionWords>,
 }
 
 /// The material.
@@ -134,6 +146,7 @@ impl Written for Words {
         let named = on_terrain(look, scheme.name)?;
         let ends = time.check(look, scheme.name, TRICKLE)?;
         let written = output.check(look, &ends, &WRITTEN)?;
+        let watched = watched::check(look, &self.gauge, &self.section, output.series_every, 2)?;
         let curvature = terrain.check(look)?;
         let releases = release.iter().enumerate();
         let releases = releases
@@ -155,10 +168,11 @@ impl Written for Words {
         for (index, one) in release.iter().enumerate() {
             one.check_files(look, &format!("release[{index}]"))?;
         }
-        let run = avalanche::plan(look, title, scheme, &material, stepping, ends, written);
+        let run = avalanche::plan(look, title, scheme, &material, stepping, ends, (written, watched));
         let kind = Kind::Terrain(Plan {
             dem: look.locate(&terrain.dem),
             crs: terrain.crs.clone(),
+            region: terrain.region,
             cell: terrain.cell,
             curvature,
             releases,
@@ -217,9 +231,12 @@ const WRITTEN: Defaults = Defaults {
 };
 
 /// Keys that not every model has.
-const KEYS: [&str; 8] = {
-    let [material, film, rest_speed, trickle, stop] = avalanche::KEYS;
-    [material, film, rest_speed, trickle, stop, "terrain", "release", "inflow"]
+const KEYS: [&str; 12] = {
+    let [material, film, rest_speed, trickle, stop, gauge, section, series, durations] = avalanche::KEYS;
+    [
+        material, film, rest_speed, trickle, stop, gauge, section, series, durations, "terrain", "release",
+        "inflow",
+    ]
 };
 
 /// A key that only a scaled case has.

@@ -237,7 +237,8 @@ impl RasterError {
         RasterError::Unit { path, metres, from: from.unwrap_or_default(), cell }
     }
 
-    pub(super) fn mismatch(path: &Path, own: &Crs, wanted: &Crs, proof: String) -> RasterError {
+    /// That a raster is in another system than wanted; `proof` says what differs.
+    pub fn mismatch(path: &Path, own: &Crs, wanted: &Crs, proof: String) -> RasterError {
         let target = Box::new(Crs::target(Some(wanted)));
         let (own, wanted) = (own.describe(), wanted.describe());
         RasterError::CrsMismatch { path: path.into(), own, wanted, proof, target }

@@ -35,6 +35,27 @@ impl Raster {
         if weight == 1.0 { sum } else { sum / weight }
     }
 
+    /// The cells whose centres lie in a box \[x0, x1, y0, y1\]; `None` where none does.
+    pub fn cropped(&self, [x0, x1, y0, y1]: [f64; 4]) -> Option<Raster> {
+        let within = |centre: &dyn Fn(usize) -> f64, count: usize, low: f64, high: f64| {
+            let mut inside = (0..count).filter(|&k| (low..=high).contains(&centre(k)));
+            let first = inside.next()?;
+            Some((first, inside.next_back().unwrap_or(first) + 1))
+        };
+        let (west, east) = within(&|k| self.x(k), self.columns, x0, x1)?;
+        let (south, north) = within(&|k| self.y(k), self.rows, y0, y1)?;
+        let row = |j: usize| &self.values[j * self.columns + west..j * self.columns + east];
+        Some(Raster {
+            columns: east - west,
+            rows: north - south,
+            west: self.west + west as f64 * self.cell,
+            south: self.south + south as f64 * self.cell,
+            cell: self.cell,
+            values: (south..north).flat_map(row).copied().collect(),
+            crs: self.crs.clone(),
+        })
+    }
+
     /// The raster with cells of another size, from the same south-western corner and as far as whole cells fit.
     ///
     /// Finer and similar cells take [`Raster::sample`] at their centre; cells at least 1.5 times as long take the
@@ -77,8 +98,9 @@ impl Raster {
 
     /// For each cell of `target` the area that cells with values cover \[m^2\], and the integral of the values over it.
     pub(crate) fn overlap(&self, target: &Raster) -> impl Iterator<Item = (f64, f64)> {
-        let across = shares(self.west, self.cell, self.columns, target.west, target.cell, target.columns);
-        let along = shares(self.south, self.cell, self.rows, target.south, target.cell, target.rows);
+        let across =
+            intervals((self.west, self.cell, self.columns), (target.west, target.cell, target.columns));
+        let along = intervals((self.south, self.cell, self.rows), (target.south, target.cell, target.rows));
         let (columns, rows) = (target.columns, target.rows);
         let cell = move |k: usize| {
             let (mut area, mut sum) = (0.0, 0.0);
@@ -97,8 +119,12 @@ impl Raster {
     }
 }
 
-/// For each new interval the old ones that it overlaps, each with the common length.
-fn shares(from: f64, step: f64, count: usize, to: f64, new: f64, cells: usize) -> Vec<Vec<(usize, f64)>> {
+/// For each new interval the old ones that it overlaps, each with the common length; both are equal intervals along an axis,
+/// given as begin, length and count.
+pub fn intervals(
+    (from, step, count): (f64, f64, usize),
+    (to, new, cells): (f64, f64, usize),
+) -> Vec<Vec<(usize, f64)>> {
     let interval = |k: usize| {
         let low = (to + k as f64 * new - from) / step;
         let high = (to + (k + 1) as f64 * new - from) / step;
@@ -126,6 +152,18 @@ mod tests {
         let holed = sampled(3, 3, |x, y| if x == 1.5 && y == 1.5 { f64::NAN } else { x });
         assert!(holed.sample(1.2, 1.2).is_nan());
         assert!((0.5..=2.5).contains(&holed.sample(0.9, 0.9)));
+    }
+
+    #[test]
+    fn a_part_has_the_cells_whose_centres_lie_in_it() {
+        let plane = sampled(8, 6, |x, y| x + 10.0 * y);
+        let part = plane.cropped([1.5, 4.4, 2.6, 100.0]).unwrap();
+        assert_eq!((part.columns, part.rows, part.west, part.south), (3, 3, 1.0, 3.0));
+        let exact = |k: usize| part.x(k % 3) + 10.0 * part.y(k / 3);
+        assert!((0..9).all(|k| part.values[k] == exact(k)));
+        assert_eq!(plane.cropped([f64::NEG_INFINITY, 1e9, -1e9, 1e9]).unwrap(), plane);
+        assert_eq!(plane.cropped([1.6, 1.7, 0.0, 9.0]), None);
+        assert_eq!(plane.cropped([9.0, 12.0, 0.0, 9.0]), None);
     }
 
     #[test]

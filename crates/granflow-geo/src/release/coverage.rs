@@ -11,7 +11,7 @@ const ROUNDING: f64 = 1e-12;
 /// Green's theorem cell by cell: every piece of an edge between two grid lines adds its height, weighted by the
 /// distance to the cell's eastern side, to its cell, and its whole height to all cells further east. What lies
 /// outside the raster is left out, holes are left out, and the sum of share * cell^2 is the covered area.
-pub(super) fn shares(polygon: &Polygon, raster: &Raster) -> Vec<(usize, f64)> {
+pub fn shares(polygon: &Polygon, raster: &Raster) -> Vec<(usize, f64)> {
     let Some(bounds) = polygon.bounding_rect() else { return Vec::new() };
     let span = |low: f64, high: f64, origin: f64, count: usize| {
         let clip = |at: f64| at.clamp(0.0, count as f64) as usize;

@@ -184,7 +184,8 @@ pub enum ReleaseError {
 }
 
 impl ReleaseError {
-    pub(super) fn system(path: &Path, own: &Crs, terrain: &Crs, proof: String) -> ReleaseError {
+    /// That polygons are in another system than the terrain; `proof` says what differs.
+    pub fn system(path: &Path, own: &Crs, terrain: &Crs, proof: String) -> ReleaseError {
         let (own, target, terrain) =
             (own.describe(), Box::new(Crs::target(Some(terrain))), terrain.describe());
         ReleaseError::System { path: path.into(), own, terrain, proof, target }

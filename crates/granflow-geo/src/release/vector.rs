@@ -29,6 +29,13 @@ pub(super) struct Feature {
     pub attributes: Vec<(String, String)>,
 }
 
+impl Feature {
+    /// The value of an attribute; empty where there is none.
+    pub fn value(&self, name: &str) -> &str {
+        self.attributes.iter().find(|(own, _)| own == name).map_or("", |(_, value)| value)
+    }
+}
+
 impl Layer {
     /// Reads a shapefile (`.shp`; the attributes from `.dbf`, the CRS from `.prj`) or else GeoJSON.
     ///
@@ -232,7 +239,7 @@ fn geojson(path: &Path, bytes: &[u8]) -> Result<Layer, ReleaseError> {
 }
 
 /// The system that the member `crs` names (GeoJSON of 2008; RFC 7946 dropped it, GDAL and QGIS still write it).
-fn named(crs: &geojson::JsonValue) -> Option<Crs> {
+pub(crate) fn named(crs: &geojson::JsonValue) -> Option<Crs> {
     let properties = crs.get("properties")?;
     if let Some(code) = properties.get("code") {
         return Crs::parse(&format!("EPSG:{code}")).ok();

@@ -121,6 +121,11 @@ pub trait Domain: Any + fmt::Debug + Send + Sync {
         Vec::new()
     }
 
+    /// What else a result file says of it, as names and texts of global attributes.
+    fn attributes(&self) -> Vec<(&'static str, String)> {
+        Vec::new()
+    }
+
     /// Elevation of the cells; where it is NaN no quantity of the cells has a value.
     fn elevation(&self) -> Option<&[f64]> {
         None
@@ -130,6 +135,17 @@ pub trait Domain: Any + fmt::Debug + Send + Sync {
     #[cfg(feature = "files")]
     fn crs(&self) -> Option<Crs> {
         None
+    }
+
+    /// Volume per plan area of a layer of thickness 1 in these cells: 1 over the cosine of the slope on terrain, where a
+    /// thickness is normal to the bed and an area is one of the map; 1 on a chute, and where there is no cell.
+    fn per_plan_area(&self, cells: &[Option<usize>]) -> Vec<f64> {
+        vec![1.0; cells.len()]
+    }
+
+    /// Dynamic pressure of a speed along the bed (kPa); NaN where the density is not known.
+    fn pressure(&self, _speed: f64) -> f64 {
+        f64::NAN
     }
 
     /// The cells as a raster that can be written for a geographic information system.
@@ -185,6 +201,11 @@ pub trait Pictures: fmt::Debug + Sync {
 
     /// The standard figures.
     fn figures<'a>(&self, view: &'a View<'a>, domain: &'a dyn Domain) -> Vec<Drawing<'a>>;
+
+    /// The line down which the mass went, from its begin on; none where there is none.
+    fn path(&self, _view: &View<'_>, _domain: &dyn Domain) -> Option<Vec<[f64; 2]>> {
+        None
+    }
 
     /// The series that the animation shows.
     fn animated(&self) -> &'static [&'static str];

@@ -32,6 +32,14 @@ impl ResultFile {
         attribute.and_then(|attribute| attribute.value.as_string()).unwrap_or_default()
     }
 
+    /// An attribute of a variable; empty if there is none.
+    #[must_use]
+    pub fn attribute(&self, variable: &str, name: &str) -> String {
+        let found = self.file.variable(variable).ok();
+        let found = found.and_then(|variable| variable.attributes.iter().find(|one| one.name == name));
+        found.and_then(|attribute| attribute.value.as_string()).unwrap_or_default()
+    }
+
     /// Is there a variable of this name?
     #[must_use]
     pub fn has(&self, name: &str) -> bool {

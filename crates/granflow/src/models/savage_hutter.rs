@@ -58,6 +58,24 @@ pub static MODEL: Model = Model {
             ["1", "s"],
         ),
         Quantity::map(
+            "duration_thickness",
+            "time during which the thickness exceeded output.durations.thickness",
+            ["1", "s"],
+        )
+        .with_maximum(),
+        Quantity::map(
+            "duration_speed",
+            "time during which the speed exceeded output.durations.speed, while thicker than the threshold",
+            ["1", "s"],
+        )
+        .with_maximum(),
+        Quantity::map(
+            "duration_pressure",
+            "time during which the pressure exceeded output.durations.pressure, while thicker than the threshold",
+            ["1", "s"],
+        )
+        .with_maximum(),
+        Quantity::map(
             "deposit",
             "thickness normal to the bed at the end, where thicker than the threshold",
             ["1", "m"],

@@ -1,8 +1,9 @@
 //! The checkpoint: everything a run needs to go on bit for bit.
 //!
-//! Layout, all little endian: the line `granflow checkpoint 3`, a u32 length, that many bytes of JSON (version,
+//! Layout, all little endian: the line `granflow checkpoint 4`, a u32 length, that many bytes of JSON (version,
 //! case, inputs, step, end, names and lengths), then as raw f64 the time and the scalars, then the arrays as raw
-//! f64 or f32, then how far frames and ledger had come (u64 records, u32 CRC-32 of them, twice), then the CRC-32 of all before.
+//! f64 or f32, then how far frames, ledger, gauges.csv and sections.csv had come (u64 records, u32
+//! CRC-32 of them, four times), then the CRC-32 of all before.
 
 use super::inputs::{Input, difference};
 use super::mark::Mark;
@@ -14,7 +15,7 @@ use std::fs::File;
 use std::io::{self, BufReader, Read, Write};
 use std::path::Path;
 
-const MAGIC: &[u8] = b"granflow checkpoint 3\n";
+const MAGIC: &[u8] = b"granflow checkpoint 4\n";
 const VERSION: &str = env!("CARGO_PKG_VERSION");
 /// Numbers that are turned from or into bytes in one go.
 const AT_ONCE: usize = 1 << 15;
@@ -52,6 +53,8 @@ pub struct Marks {
     pub frames: Mark,
     /// The ledger.
     pub ledger: Mark,
+    /// The lines of gauges.csv and of sections.csv; 0 where there is no such file.
+    pub series: [Mark; 2],
 }
 
 /// The numbers of an array, which the file has in the same precision.
@@ -180,6 +183,7 @@ pub(crate) fn write_from(
         arrays(&mut out)?;
         out.write_all(&marks.frames.to_bytes())?;
         out.write_all(&marks.ledger.to_bytes())?;
+        marks.series.iter().try_for_each(|mark| out.write_all(&mark.to_bytes()))?;
         out.finish().map(drop)
     })
 }
@@ -212,8 +216,9 @@ impl Checkpoint<'static> {
             file.read_exact(&mut bytes)?;
             Ok(Mark::from_bytes(bytes))
         };
-        let [frames, ledger] = [mark(), mark()];
-        let marks = Marks { frames: frames.map_err(unread())?, ledger: ledger.map_err(unread())? };
+        let [frames, ledger, gauges, sections] =
+            [mark(), mark(), mark(), mark()].map(|mark| mark.map_err(unread()));
+        let marks = Marks { frames: frames?, ledger: ledger?, series: [gauges?, sections?] };
         let (computed, mut crc) = (file.crc.clone().finalize(), [0; 4]);
         file.read_exact(&mut crc).map_err(unread())?;
         if crc != computed.to_le_bytes() {
@@ -275,7 +280,7 @@ impl Header {
             .iter()
             .map(|(_, length, precision)| (*length as u64).saturating_mul(precision.width() as u64));
         let numbers = sizes.fold(8 * (1 + header.scalars.len() as u64), u64::saturating_add);
-        let wanted = numbers.saturating_add(2 * Mark::BYTES as u64 + 4).saturating_add(front);
+        let wanted = numbers.saturating_add(4 * Mark::BYTES as u64 + 4).saturating_add(front);
         if size != wanted {
             return Err(if size < wanted { short(wanted) } else { altered(path) });
         }

@@ -23,7 +23,7 @@ pub struct Axis {
     pub long_name: String,
     /// Name in the CF table, such as `projection_x_coordinate`.
     pub standard_name: Option<String>,
-    /// "X", "Y" or "T".
+    /// "X", "Y" or "T"; empty for a coordinate that is no place and no time.
     pub axis: &'static str,
 }
 

@@ -62,6 +62,7 @@ pub fn dataset<'a>(
     ];
     let unit = plane.domain.units().label(" m");
     attributes.extend(threshold.map(|threshold| ("threshold", format!("{threshold}{unit}"))));
+    attributes.extend(plane.domain.attributes());
     Ok(Dataset {
         title,
         history,

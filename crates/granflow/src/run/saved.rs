@@ -20,6 +20,10 @@ pub struct Saved<'a> {
     pub drift: Vec<f64>,
     /// What the model keeps beside the state, as [`Physics::save`](super::Physics::save) gives it.
     pub model: Vec<f64>,
+    /// What has passed each section, as a sum and its compensation.
+    pub passed: Vec<[f64; 2]>,
+    /// What the maps of durations are made of, two arrays each.
+    pub durations: Vec<Cow<'a, [f64]>>,
     /// Peaks so far.
     pub record: Record,
 }
@@ -28,7 +32,7 @@ impl Saved<'_> {
     /// The same with numbers of its own.
     #[must_use]
     pub fn into_owned(self) -> Saved<'static> {
-        let Saved { cells, clock, state, maps, at_rest, drift, model, record } = self;
+        let Saved { cells, clock, state, maps, at_rest, drift, model, passed, durations, record } = self;
         Saved {
             cells,
             clock,
@@ -37,6 +41,8 @@ impl Saved<'_> {
             at_rest,
             drift,
             model,
+            passed,
+            durations: durations.into_iter().map(|part| Cow::Owned(part.into_owned())).collect(),
             record,
         }
     }

@@ -1,6 +1,10 @@
 //! A simulation of the engine as a [`Run`]: what a model adds to its scheme is its [`Physics`].
 
-use super::{Failure, FieldView, Laws, Maps, Record, Run, Saved, Totals, trickle};
+mod exceeded;
+
+use super::durations::{Duration as Exceedance, Exceeded};
+use super::passage::Passages;
+use super::{Face, Failure, FieldView, Laws, Maps, Passage, Record, Run, Saved, Totals, trickle};
 use crate::model::Plane;
 use granflow_engine::Stepper;
 use granflow_engine::grid::Layout;
@@ -126,6 +130,10 @@ pub struct Simulated<const D: usize, P: Physics<D>> {
     tracks_energy: bool,
     /// Thickness of a trickle, if that is looked for.
     trickle: Option<f64>,
+    /// For how long thresholds were exceeded.
+    durations: Vec<Exceedance>,
+    /// What passes sections, where there are some.
+    passages: Passages,
     /// The drift of the step before [`Run::restore`], until the next step.
     restored_drift: Option<Vec<f64>>,
 }
@@ -155,6 +163,8 @@ impl<const D: usize, P: Physics<D>> Simulated<D, P> {
             record,
             tracks_energy: false,
             trickle: None,
+            durations: Vec::new(),
+            passages: Passages::default(),
             restored_drift: None,
         }
     }
@@ -225,6 +235,17 @@ impl<const D: usize, P: Physics<D>> Run for Simulated<D, P> {
     fn track_trickle(&mut self, thickness: f64) {
         self.trickle = Some(thickness);
     }
+    fn track_passage(&mut self, sections: Vec<Vec<(Face, f64)>>) {
+        self.passages = Passages::through(sections);
+    }
+    fn track_durations(&mut self, exceeded: &[Exceeded]) {
+        let cells = self.plane.cells();
+        self.durations = exceeded.iter().map(|one| Exceedance::new(*one, cells)).collect();
+        self.note_durations();
+    }
+    fn passages(&self) -> Vec<Passage> {
+        self.passages.at(self.simulation.time())
+    }
     fn at_rest(&self) -> bool {
         if self.simulation.is_shown() {
             return false;
@@ -243,11 +264,17 @@ impl<const D: usize, P: Physics<D>> Run for Simulated<D, P> {
         if let Some(failure) = self.too_long() {
             return Err(failure);
         }
-        let begun = Instant::now();
+        if !self.passages.is_empty() {
+            // The state before every step: what passed in it is found from that.
+            self.simulation.expect(f64::NEG_INFINITY);
+        }
+        let (begin, begun) = (self.simulation.time(), Instant::now());
         let advanced = self.simulation.advance(until);
         self.record.stepping += begun.elapsed();
         self.restored_drift = None;
         let dt = advanced?;
+        self.passages.take(&mut self.simulation, begin);
+        self.note_durations();
         self.record.peak_speed = self.record.peak_speed.max(self.simulation.speed());
         if self.tracks_energy {
             self.simulation.take_sums();
@@ -301,12 +328,15 @@ impl<const D: usize, P: Physics<D>> Run for Simulated<D, P> {
         let (layout, maps) = (self.simulation.layout(), self.simulation.maps());
         let named = maps.into_iter().flat_map(granflow_engine::Maps::named);
         let known = named.filter(|(name, _)| self.plane.model().quantity(name).is_some());
-        known.map(|(name, map)| (name, layout.unpadded(map))).collect()
+        let peaks = known.map(|(name, map)| (name, layout.unpadded(map)));
+        peaks.chain(self.exceedances()).collect()
     }
     fn into_peaks(self: Box<Self>) -> Maps {
+        let exceedances = self.exceedances();
         let Simulated { simulation, plane, .. } = *self;
         let mut maps = simulation.into_maps();
         maps.retain(|(name, _)| plane.model().quantity(name).is_some());
+        maps.extend(exceedances);
         maps
     }
     fn place(&self) -> Plane {
@@ -343,11 +373,13 @@ impl<const D: usize, P: Physics<D>> Run for Simulated<D, P> {
             at_rest: self.simulation.at_rest(),
             drift: self.drift().to_vec(),
             model: self.physics.save(),
+            passed: self.passages.save(),
+            durations: self.durations.iter().flat_map(Exceedance::arrays).map(Cow::Borrowed).collect(),
             record: self.record,
         }
     }
     fn restore(&mut self, saved: Saved<'static>) -> Result<(), String> {
-        let Saved { cells, clock, state, mut maps, at_rest, drift, model, record } = saved;
+        let Saved { cells, clock, state, mut maps, at_rest, drift, model, passed, durations, record } = saved;
         let own = self.stepper().cells();
         if cells != own {
             let [[x, y], [own_x, own_y]] = [cells, own];
@@ -369,6 +401,18 @@ impl<const D: usize, P: Physics<D>> Run for Simulated<D, P> {
         }
         if !self.simulation.restore(&clock, state) {
             return Err("its state has another shape".to_owned());
+        }
+        if !self.passages.restore(&passed, self.simulation.time()) {
+            return Err("it has another number of sections".to_owned());
+        }
+        let mut arrays = durations.into_iter().map(Cow::into_owned);
+        for duration in &mut self.durations {
+            let (Some(ended), Some(since)) = (arrays.next(), arrays.next()) else {
+                return Err("it has fewer maps of durations".to_owned());
+            };
+            if !duration.restore([ended, since]) {
+                return Err("its maps of durations have another shape".to_owned());
+            }
         }
         self.restored_drift = Some(drift);
         if at_rest {

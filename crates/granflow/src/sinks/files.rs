@@ -2,20 +2,25 @@
 
 mod checkpoints;
 mod ending;
+mod series;
 mod writer;
 
 use super::schedule::{Due, Schedule};
 use super::{Sink, SinkError};
+use crate::StartError;
 use crate::output;
 use crate::output::checkpoint::Origin;
 use crate::output::folder::Folder;
 use crate::output::frames::Frames;
 use crate::output::ledger::{Entry, Ledger};
+use crate::output::lines::Lines;
 use crate::output::summary::{StopReason, Summary};
 use crate::results::{FilesError, Finished};
 use crate::run::{Run, check_state};
+use crate::watch::Watch;
 use ending::Ending;
 use granflow_case::RunPlan;
+use series::Series;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 use writer::Writer;
@@ -34,6 +39,9 @@ pub enum BeginError {
     /// A file could not be read or written.
     #[error(transparent)]
     Output(#[from] output::Error),
+    /// A gauge or a section cannot be looked at.
+    #[error(transparent)]
+    Watch(#[from] Box<StartError>),
     /// The writing thread could not be started.
     #[error("cannot start the threads: {0}")]
     Thread(String),
@@ -63,6 +71,7 @@ pub struct Files {
     command: String,
     writer: Writer,
     schedule: Schedule,
+    series: Series,
     /// Times of the last frame and of the last ledger line.
     written: [f64; 2],
     /// When this began on the clock, and the updates of a cell before it.
@@ -100,9 +109,12 @@ impl Files {
         let directory = folder.path();
         let frames = Frames::create(&frames_in(directory), plan.output.precision, run.plane().series())?;
         let ledger = Ledger::create(&ledger_in(directory), run.plane().outlets())?;
-        let mut files = Self::over(folder, plan, origin, command, run, frames, ledger)?;
+        let series = Series::new(Watch::of(plan, run).map_err(Box::new)?, plan.watched.every, run);
+        let tables = series.create(directory)?;
+        let mut files = Self::over(folder, plan, origin, command, run, (frames, ledger, tables), series)?;
         files.frame(run)?;
         files.schedule.plan(run);
+        files.series.plan(run);
         // From the first instant on a run that is killed goes on.
         files.checkpoint(run, None)?;
         Ok(files)
@@ -128,13 +140,15 @@ impl Files {
             folder.abandon();
             return Err(error);
         }
+        let mut series = Series::new(Watch::of(plan, run).map_err(Box::new)?, plan.watched.every, run);
         run.stepper_mut().release_buffers();
         let taken = checkpoints::read(&saved, &origin, run)?;
         if let (Some(_), Some(summary)) = (taken.ended, ended(directory)?) {
             return Err(BeginError::Ended { directory: directory.to_owned(), summary: Box::new(summary) });
         }
         let [frames, ledger] = [frames_in(directory), ledger_in(directory)];
-        for path in [&frames, &ledger] {
+        let tables = series.paths(directory);
+        for path in [&frames, &ledger].into_iter().chain(tables.iter().flatten()) {
             if !path.exists() {
                 let problem = format!("{} is gone, which the checkpoint counts on", path.display());
                 return Err(refused(problem));
@@ -144,9 +158,12 @@ impl Files {
         let mut ledger = Ledger::open(&ledger)?;
         frames.truncate_to(taken.marks.frames)?;
         ledger.truncate_to(taken.marks.ledger)?;
+        let tables = series.resume(directory, taken.marks.series)?;
         run.restore(taken.saved).map_err(refused)?;
-        let mut files = Self::over(folder, plan, origin, command, run, frames, ledger)?;
-        files.schedule.resume(taken.due);
+        let [frame, line, look] = taken.due;
+        series.resumed(look, run.time());
+        let mut files = Self::over(folder, plan, origin, command, run, (frames, ledger, tables), series)?;
+        files.schedule.resume([frame, line]);
         Ok(files)
     }
 
@@ -156,15 +173,15 @@ impl Files {
         origin: Origin,
         command: &str,
         run: &dyn Run,
-        frames: Frames,
-        ledger: Ledger,
+        (frames, ledger, tables): (Frames, Ledger, [Option<Lines>; 2]),
+        series: Series,
     ) -> Result<Files, BeginError> {
         let now = Instant::now();
         let line = ledger.entries().last().map(|entry| entry.time);
         let written = [frames.times().last().copied(), line].map(|time| time.unwrap_or(f64::NEG_INFINITY));
         let checkpoint = checkpoints::file_in(folder.path());
         let count = frames.times().len() as u64;
-        let writer = Writer::start(frames, ledger, checkpoint, command.to_owned())
+        let writer = Writer::start(frames, ledger, tables, checkpoint, command.to_owned())
             .map_err(|error| BeginError::Thread(error.to_string()))?;
         Ok(Files {
             folder,
@@ -173,6 +190,7 @@ impl Files {
             command: command.to_owned(),
             writer,
             schedule: Schedule::new(plan.output.frames, run.plane()),
+            series,
             written,
             begun: now,
             updates: run.stepper().updates(),
@@ -216,6 +234,8 @@ impl Files {
         let shown = &*run;
         self.writer.frame(run.time(), |field, from, values| shown.fill(field, from, values))?;
         self.written[0] = run.time();
+        self.series.look(run, &mut self.writer)?;
+        self.series.hand_over(&mut self.writer)?;
         self.line(run)
     }
 
@@ -234,6 +254,7 @@ impl Files {
         if let Some((last, cost)) = self.joined
             && last.elapsed().as_secs_f64() > (JOIN * cost).max(PAUSES[1])
         {
+            self.series.hand_over(&mut self.writer)?;
             let ending = Ending::of(self, run, StopReason::Interrupted);
             self.writer.join(ending)?;
             self.joined = None;
@@ -243,6 +264,9 @@ impl Files {
 
     fn step_taken(&mut self, run: &mut dyn Run, due: Due) -> Result<(), output::Error> {
         self.writer.check()?;
+        if self.series.is_every_step() {
+            self.series.look(run, &mut self.writer)?;
+        }
         match due {
             Due::Frame => self.frame_due(run)?,
             Due::Line => self.line(run)?,
@@ -263,7 +287,10 @@ impl Files {
     /// Save what goes on from here, with every frame and line so far.
     fn checkpoint(&mut self, run: &dyn Run, ended: Option<StopReason>) -> Result<(), output::Error> {
         self.saved = Instant::now();
-        self.writer.checkpoint(&checkpoints::of(run, &self.origin, self.schedule.next(), ended))?;
+        self.series.hand_over(&mut self.writer)?;
+        let [frame, line] = self.schedule.next();
+        let due = [frame, line, self.series.next()];
+        self.writer.checkpoint(&checkpoints::of(run, &self.origin, due, ended))?;
         (self.cost, self.saving) = (self.saved.elapsed().as_secs_f64(), true);
         Ok(())
     }
@@ -282,6 +309,7 @@ impl Files {
                 self.frame(&mut *run)?;
             }
         }
+        self.series.hand_over(&mut self.writer)?;
         let command = self.command.clone();
         let ending = Ending::last(&self, run, reason);
         let (frames, ledger) = self.writer.end()?;
@@ -295,7 +323,8 @@ impl Files {
     ///
     /// # Errors
     /// [`output::Error`] naming the file.
-    pub fn give_up(self, run: Box<dyn Run>, failure: &str) -> Result<Finished, output::Error> {
+    pub fn give_up(mut self, run: Box<dyn Run>, failure: &str) -> Result<Finished, output::Error> {
+        self.series.hand_over(&mut self.writer)?;
         let command = self.command.clone();
         let mut ending = Ending::last(&self, run, StopReason::Failed);
         ending.explain(failure);
@@ -309,9 +338,17 @@ impl Files {
 
 impl Sink for Files {
     fn next_instant(&self) -> f64 {
-        self.schedule.next()[0]
+        self.schedule.next()[0].min(self.series.next())
     }
     fn at_instant(&mut self, run: &mut dyn Run) -> Result<(), SinkError> {
+        let instant = self.next_instant();
+        if self.series.next() == instant {
+            self.series.look(run, &mut self.writer).map_err(SinkError::of)?;
+            self.series.plan(run);
+        }
+        if self.schedule.next()[0] > instant {
+            return Ok(());
+        }
         check_state(run).map_err(SinkError::of)?;
         self.frame_due(run).map_err(SinkError::of)
     }

@@ -20,6 +20,9 @@ pub(super) struct Elevation {
     /// Coordinate reference system where the file has none, for instance "EPSG:31287".
     #[serde(skip_serializing_if = "Option::is_none")]
     pub crs: Option<String>,
+    /// The part of the raster that is computed on: [x0, x1, y0, y1]; all cells whose centres lie in it.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub region: Option<[f64; 4]>,
     /// Size of the cells in metres, if the raster is to be resampled.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub cell: Option<f64>,
@@ -56,7 +59,7 @@ pub(super) struct Window {
 
 impl Default for Curvature {
     fn default() -> Self {
-        Self::Window(Window { length: Length(20.0) })
+        Self::Window(Window { length: Length(super::CURVATURE) })
     }
 }
 
@@ -88,6 +91,19 @@ impl Elevation {
         let length = self.curvature.length();
         look.positive("terrain.cell", self.cell)?;
         look.positive("terrain.curvature.length", length)?;
+        if let Some([x0, x1, y0, y1]) = self.region {
+            for (k, value) in [x0, x1, y0, y1].into_iter().enumerate() {
+                look.number(&format!("terrain.region[{k}]"), value, |_| true, "a finite number")?;
+            }
+            if x0 >= x1 || y0 >= y1 {
+                let message = format!("[{x0}, {x1}, {y0}, {y1}] has no inside");
+                return Err(look.fault(
+                    "terrain.region",
+                    message,
+                    "write [x0, x1, y0, y1] with x0 < x1 and y0 < y1",
+                ));
+            }
+        }
         Ok(length)
     }
 }

@@ -139,7 +139,7 @@ where
             dry = R::select(slopes.any, at_mid_time, dry);
             ahead = Some((slopes.any, per_axis!(k => u[k] + (slopes.advected[k] + slopes.advected[k]))));
         }
-        self.slowed(here, plane, Resistance { dry, ..*law }, idle, pushed, ahead, dt)
+        self.slowed(here, plane, (Resistance { dry, ..*law }, idle), pushed, ahead, dt)
     }
 
     /// The dry resistance at mid time: of the mean of the velocity before and after the push, moved on and shortened by what friction

@@ -129,7 +129,12 @@ pub(super) fn plane<'a>(view: &'a View<'a>) -> Vec<Drawing<'a>> {
             maps.push((name, "thickness h", format!("thickness at t = {}", short(*time)), field));
         }
     }
-    let peaks = [("peak_thickness", "greatest thickness"), ("peak_speed", "greatest speed")];
+    let peaks = [
+        ("peak_thickness", "greatest thickness"),
+        ("peak_speed", "greatest speed"),
+        ("duration_thickness", "time above the thickness"),
+        ("duration_speed", "time above the speed"),
+    ];
     maps.extend(
         peaks.iter().filter_map(|(name, label)| {
             Some((*name, *label, format!("{label} over the run"), view.map(name)?))

@@ -159,12 +159,15 @@ impl Layer<'_> {
 pub(super) fn figures<'a>(view: &'a View<'a>, terrain: &'a TerrainDomain) -> Vec<Drawing<'a>> {
     let Some(peak) = view.map("peak_thickness") else { return Vec::new() };
     let ground = Arc::new(Background { path: path(view, terrain), ..Background::of(view, terrain) });
-    let plan: [(&'static str, &'static str, &'static str, Colours); 5] = [
+    let plan: [(&'static str, &'static str, &'static str, Colours); 8] = [
         ("peak_thickness", "greatest thickness", "m", Colours::Thickness),
         ("deposit", "deposit", "m", Colours::Thickness),
         ("peak_speed", "greatest speed", "m/s", Colours::Speed),
         ("peak_pressure", "greatest pressure", "kPa", Colours::Speed),
         ("arrival_time", "arrival time", "s", Colours::Viridis),
+        ("duration_thickness", "time above the thickness", "s", Colours::Viridis),
+        ("duration_speed", "time above the speed", "s", Colours::Viridis),
+        ("duration_pressure", "time above the pressure", "s", Colours::Viridis),
     ];
     let layers = plan.into_iter().filter_map(|(name, label, unit, colours)| {
         let values = view.map(name)?;

@@ -24,7 +24,7 @@ pub(super) struct PathLine {
 ///
 /// Among all lines from the highest released cell to the reached cell farthest from it, that of the smallest
 /// integral of 1/(q + q_max/100) ds, with q the greatest thickness times the greatest speed of a cell (Dijkstra
-/// over eight neighbours): it follows the core of the flow.
+/// over eight neighbours): it follows the core of the flow. Where nothing has moved it is the shortest.
 pub(super) fn path(view: &View, terrain: &TerrainDomain) -> Option<PathLine> {
     let bed = &terrain.raster.values;
     let (thickness, speed) = (view.map("peak_thickness")?, view.map("peak_speed")?);
@@ -41,10 +41,11 @@ pub(super) fn path(view: &View, terrain: &TerrainDomain) -> Option<PathLine> {
 
     let flow: Vec<f64> = thickness.iter().zip(speed).map(|(h, u)| h * u).collect();
     let most = flow.iter().fold(0.0_f64, |most, v| most.max(*v));
-    if most <= 0.0 || far == top {
+    if far == top {
         return None;
     }
-    let price = |k: usize| 1.0 / (flow[k].max(0.0) + FLOOR * most);
+    let floor = if most > 0.0 { FLOOR * most } else { 1.0 };
+    let price = |k: usize| 1.0 / (flow[k].max(0.0) + floor);
     let cost = |a: usize, b: usize| apart(a, b) * 0.5 * (price(a) + price(b));
     let cells = cheapest([top, far], [columns, y.len()], |cell| bed[cell].is_finite(), cost)?;
     Some(PathLine::through(cells, x, y))

@@ -8,7 +8,11 @@ use std::sync::Arc;
 #[cfg(feature = "geo")]
 use super::{maps, terrain::TerrainDomain};
 #[cfg(feature = "geo")]
-use crate::{raster::Raster, release::Sparse};
+use crate::{
+    raster::{Crs, Raster},
+    release::Sparse,
+    terrain::Curvature,
+};
 
 #[derive(Debug)]
 pub(super) struct Avalanche;
@@ -41,6 +45,18 @@ impl Pictures for Avalanche {
         if view.dimensions() == 1 { chute::line(view) } else { chute::plane(view) }
     }
 
+    /// On a mountain the line along which most of the mass went, on a chute its axis.
+    fn path(&self, view: &View<'_>, domain: &dyn Domain) -> Option<Vec<[f64; 2]>> {
+        #[cfg(feature = "geo")]
+        if let Some(terrain) = domain.get::<TerrainDomain>() {
+            return super::path::path(view, terrain).map(|path| path.points);
+        }
+        let _ = domain;
+        let middle = |centres: &[f64]| Some(0.5 * (centres.first()? + centres.last()?));
+        let y = middle(&view.y).unwrap_or(0.0);
+        Some(vec![[*view.x.first()?, y], [*view.x.last()?, y]])
+    }
+
     fn animated(&self) -> &'static [&'static str] {
         &["thickness"]
     }
@@ -68,10 +84,11 @@ fn terrain(_file: &ResultFile, _centres: [&[f64]; 2]) -> Result<Arc<dyn Domain>,
 #[cfg(feature = "geo")]
 fn terrain(file: &ResultFile, centres: [&[f64]; 2]) -> Result<Arc<dyn Domain>, String> {
     Ok(Arc::new(TerrainDomain {
-        raster: Arc::new(raster(centres, file.whole("bed")?)?),
+        raster: Arc::new(Raster { crs: crs(file), ..raster(centres, file.whole("bed")?)? }),
         release: Arc::new(Sparse::of(file.first("thickness", 2)?)),
         density: f64::NAN,
         threshold: threshold(&file.text("threshold")),
+        curvature: curvature(&file.text("curvature")),
         remarks: Vec::new(),
     }))
 }
@@ -81,6 +98,30 @@ fn terrain(file: &ResultFile, centres: [&[f64]; 2]) -> Result<Arc<dyn Domain>, S
 fn threshold(attribute: &str) -> f64 {
     let number = attribute.split_whitespace().next().and_then(|number| number.parse().ok());
     number.unwrap_or(granflow_case::terrain::THRESHOLD)
+}
+
+/// The coordinate reference system of a file.
+#[cfg(feature = "geo")]
+fn crs(file: &ResultFile) -> Option<Crs> {
+    let text = |name: &str| Some(file.attribute("crs", name)).filter(|text| !text.is_empty());
+    let crs = |text: String| Crs::parse(&text).ok();
+    let code = text("epsg_code").and_then(crs);
+    let known = text("crs_wkt").and_then(crs);
+    match (code, known) {
+        (Some(code), Some(known)) => Some(Crs { epsg: code.epsg, ..known }),
+        (code, known) => code.or(known),
+    }
+}
+
+/// The length over which the slope of the bed is taken, from its attribute, as in "20 m" or "off"; the usual one where a file
+/// has none.
+#[cfg(feature = "geo")]
+fn curvature(attribute: &str) -> Curvature {
+    let number = attribute.split_whitespace().next().and_then(|number| number.parse().ok());
+    match (attribute, number) {
+        ("off", _) => Curvature::Off,
+        (_, length) => Curvature::Length(length.unwrap_or(granflow_case::terrain::CURVATURE)),
+    }
 }
 
 /// The bed on the cells with these centres.

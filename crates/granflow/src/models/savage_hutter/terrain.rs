@@ -12,6 +12,7 @@ use crate::output::outlines::{Lattice, Outline, contour};
 use crate::output::summary::Summary;
 use crate::raster::Raster;
 use crate::release::Sparse;
+use crate::terrain::{Curvature, Terrain};
 use granflow_geo::Remark;
 use std::borrow::Cow;
 use std::sync::Arc;
@@ -36,6 +37,8 @@ pub struct TerrainDomain {
     pub density: f64,
     /// Thickness normal to the bed that a layer must exceed to count: outside that its maps have no value \[m\].
     pub threshold: f64,
+    /// The length over which the slope of the bed is taken.
+    pub curvature: Curvature,
     /// What was decided while the files of the case were read, and what looks wrong in them.
     pub remarks: Vec<Remark>,
 }
@@ -61,6 +64,14 @@ impl Domain for TerrainDomain {
         self.remarks.iter().map(ToString::to_string).collect()
     }
 
+    fn attributes(&self) -> Vec<(&'static str, String)> {
+        let curvature = match self.curvature {
+            Curvature::Length(length) => format!("{length} m"),
+            Curvature::Off => "off".to_owned(),
+        };
+        vec![("curvature", curvature)]
+    }
+
     fn elevation(&self) -> Option<&[f64]> {
         Some(&self.raster.values)
     }
@@ -68,6 +79,19 @@ impl Domain for TerrainDomain {
     #[cfg(feature = "files")]
     fn crs(&self) -> Option<Crs> {
         self.raster.crs.as_ref().map(|crs| Crs { epsg: crs.epsg, wkt: crs.wkt.clone() })
+    }
+
+    fn per_plan_area(&self, cells: &[Option<usize>]) -> Vec<f64> {
+        let terrain = Terrain::new(self.raster.clone(), self.curvature);
+        let of = |cell: &Option<usize>| {
+            cell.map_or(1.0, |cell| 1.0 / terrain.fit(self.raster.place(cell)).cosine())
+        };
+        cells.iter().map(of).collect()
+    }
+
+    /// rho v^2.
+    fn pressure(&self, speed: f64) -> f64 {
+        self.density * speed * speed / 1000.0
     }
 
     fn raster(&self) -> Option<&Raster> {
@@ -87,7 +111,7 @@ impl Domain for TerrainDomain {
     #[cfg(feature = "files")]
     fn derive(&self, centres: [&[f64]; 2], maps: &mut Maps, summary: &mut Summary) {
         let Some((_, speed)) = maps.iter().find(|(name, _)| *name == "peak_speed") else { return };
-        let pressure: Vec<f64> = speed.iter().map(|v| self.density * v * v / 1000.0).collect();
+        let pressure: Vec<f64> = speed.iter().map(|v| self.pressure(*v)).collect();
         if let Some((length, drop)) = self.runout(centres, &pressure) {
             summary.runout = Some(length);
             summary.reach_angle = Some((drop / length).atan().to_degrees());

@@ -1,8 +1,11 @@
 use super::*;
 use std::fs;
 
-const MARKS: Marks =
-    Marks { frames: Mark { count: 3, crc: 0xdead_beef }, ledger: Mark { count: u64::MAX, crc: 1 } };
+const MARKS: Marks = Marks {
+    frames: Mark { count: 3, crc: 0xdead_beef },
+    ledger: Mark { count: u64::MAX, crc: 1 },
+    series: [Mark { count: 7, crc: 2 }, Mark { count: 0, crc: 0 }],
+};
 
 fn origin(case: &str, crc: u32) -> Origin {
     Origin { case: case_hash(case), inputs: vec![Input { name: "dem.asc".into(), bytes: 7, crc }] }

@@ -72,7 +72,9 @@ impl Dataset<'_> {
         out: &mut dyn Write,
     ) -> io::Result<()> {
         let precision = variable.precision;
-        let terrain = self.terrain.filter(|terrain| terrain.len() == maps.length);
+        let terrain = self.terrain.filter(|terrain| {
+            terrain.len() == maps.length && variable.axes.last().is_some_and(|axis| axis == "x")
+        });
         let mut nothing = Vec::new();
         precision.encode(&[f64::NAN], &mut nothing);
         let mut bytes = Vec::new();
@@ -174,7 +176,8 @@ impl Dataset<'_> {
             file.write_variable(id, &axis.values)?;
             let standard = axis.standard_name.as_deref().map(|name| ("standard_name", name));
             let names = [("units", axis.units.as_str()), ("long_name", &axis.long_name), ("axis", axis.axis)];
-            describe(&mut file, id, names.into_iter().chain(standard))?;
+            let names = names.into_iter().filter(|(_, value)| !value.is_empty());
+            describe(&mut file, id, names.chain(standard))?;
         }
         if let Some(crs) = &self.crs {
             let id = file.add_variable::<i32>("crs", &[])?;
@@ -197,7 +200,8 @@ impl Dataset<'_> {
                     id
                 }
             };
-            let mapping = self.crs.as_ref().map(|_| ("grid_mapping", "crs"));
+            let placed = variable.axes.last().is_some_and(|axis| axis.starts_with('x'));
+            let mapping = self.crs.as_ref().filter(|_| placed).map(|_| ("grid_mapping", "crs"));
             let names = [("units", variable.units.as_str()), ("long_name", &variable.long_name)];
             describe(&mut file, id, names.into_iter().chain(mapping))?;
         }

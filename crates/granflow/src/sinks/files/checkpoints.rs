@@ -11,14 +11,14 @@ pub(super) fn file_in(directory: &Path) -> PathBuf {
     directory.join("checkpoint").join("state.bin")
 }
 
-/// The run as it stands; `due` are the times of the next frame and line, `ended` says why it goes no further.
+/// The run as it stands; `due` are the times of the next frame, line and look at gauges and sections, `ended` says why it goes no further.
 pub(super) fn of<'a>(
     run: &'a dyn Run,
     origin: &Origin,
-    due: [f64; 2],
+    due: [f64; 3],
     ended: Option<StopReason>,
 ) -> Checkpoint<'a> {
-    let Saved { cells, clock, state, maps, at_rest, drift, model, record } = run.save();
+    let Saved { cells, clock, state, maps, at_rest, drift, model, passed, durations, record } = run.save();
     let mut scalars: Vec<(String, f64)> = vec![
         ("peak_speed".into(), record.peak_speed),
         ("peak_energy".into(), record.peak_energy),
@@ -26,17 +26,21 @@ pub(super) fn of<'a>(
         ("initial".into(), record.initial),
         ("next_frame".into(), due[0]),
         ("next_line".into(), due[1]),
+        ("next_series".into(), due[2]),
         ("at_rest".into(), f64::from(u8::from(at_rest))),
         ("columns".into(), cells[0] as f64),
         ("rows".into(), cells[1] as f64),
     ];
-    for (list, values) in [("clock", clock), ("drift", drift), ("model", model)] {
+    let passed = passed.into_iter().flatten().collect();
+    for (list, values) in [("clock", clock), ("drift", drift), ("model", model), ("passed", passed)] {
         scalars.extend(values.iter().enumerate().map(|(k, value)| (format!("{list}_{k}"), *value)));
     }
     let state = state.into_iter().enumerate();
     let mut arrays: Vec<(String, Numbers)> =
         state.map(|(k, part)| (format!("state_{k}"), Numbers::Double(part))).collect();
     arrays.extend(maps.into_iter().map(|(name, map)| (name.to_owned(), Numbers::Single(map))));
+    let durations = durations.into_iter().enumerate();
+    arrays.extend(durations.map(|(k, part)| (format!("duration_{k}"), Numbers::Double(part))));
     Checkpoint { origin: origin.clone(), ended, step: run.steps(), time: run.time(), scalars, arrays }
 }
 
@@ -44,8 +48,8 @@ pub(super) fn of<'a>(
 pub(super) struct Taken {
     /// The run.
     pub saved: Saved<'static>,
-    /// Times of the next frame and line.
-    pub due: [f64; 2],
+    /// Times of the next frame, line and look at gauges and sections.
+    pub due: [f64; 3],
     /// How far the files beside it had come.
     pub marks: Marks,
     /// Why the run had ended, if it had.
@@ -65,16 +69,18 @@ pub(super) fn read(path: &Path, origin: &Origin, run: &dyn Run) -> Result<Taken,
         flowed: scalar("flowed"),
         ..*run.record()
     };
-    let due = [scalar("next_frame"), scalar("next_line")];
+    let due = ["next_frame", "next_line", "next_series"].map(scalar);
     let cells = ["columns", "rows"].map(|name| scalar(name) as usize);
     let at_rest = scalar("at_rest") == 1.0;
     let (clock, drift, model) = (list("clock"), list("drift"), list("model"));
+    let passed = list("passed").as_chunks().0.to_vec();
     let names: Vec<&'static str> = now.maps.iter().map(|(name, _)| *name).collect();
     let parts = now.state.len();
     let state = (0..parts).map_while(|k| saved.take(&format!("state_{k}"))).map(Cow::Owned).collect();
+    let durations = (0..).map_while(|k| saved.take(&format!("duration_{k}"))).map(Cow::Owned).collect();
     let single = |values: Vec<f64>| Cow::Owned(values.into_iter().map(|value| value as f32).collect());
     let maps = names.into_iter().filter_map(|name| Some((name, single(saved.take(name)?)))).collect();
     let ended = saved.ended;
-    let saved = Saved { cells, clock, state, maps, at_rest, drift, model, record };
+    let saved = Saved { cells, clock, state, maps, at_rest, drift, model, passed, durations, record };
     Ok(Taken { saved, due, marks, ended })
 }

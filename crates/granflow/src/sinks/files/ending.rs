@@ -19,6 +19,7 @@ pub(super) struct Ending {
     case_text: String,
     plane: Plane,
     maps: Maps,
+    series: [Option<PathBuf>; 2],
     summary: Summary,
 }
 
@@ -51,6 +52,7 @@ impl Ending {
             case_text: files.plan.text(),
             plane,
             maps,
+            series: files.series.paths(files.folder.path()),
             summary,
         }
     }
@@ -62,10 +64,10 @@ impl Ending {
 
     /// Put it together; `folder` keeps its lock for as long as files are made.
     pub fn finished(self, folder: Option<Folder>, frames: Frames, ledger: Vec<Entry>) -> Finished {
-        let Ending { directory, files, case, case_text, plane, mut maps, mut summary } = self;
+        let Ending { directory, files, case, case_text, plane, mut maps, series, mut summary } = self;
         plane.derive(&mut maps, &mut summary);
         summary.warnings = (plane.model().warnings)(plane.model(), &summary);
-        Finished { directory, folder, files, case, case_text, plane, frames, ledger, maps, summary }
+        Finished { directory, folder, files, case, case_text, plane, frames, ledger, maps, series, summary }
     }
 }
 
@@ -124,6 +126,14 @@ fn summary(files: &Files, run: &dyn Run, stop_reason: StopReason) -> Summary {
     }
     for (name, value) in run.numbers() {
         summary.add(&name, value);
+    }
+    let durations = plan.output.durations;
+    for (name, threshold) in
+        [("thickness", durations.thickness), ("speed", durations.speed), ("pressure", durations.pressure)]
+    {
+        if let Some(threshold) = threshold {
+            summary.add(&format!("duration_{name}_threshold"), threshold);
+        }
     }
     if let Some(Until::Steady { rate }) = plan.ends.until {
         summary.add("steady_rate", rate);

@@ -8,6 +8,8 @@ use super::ending::Ending;
 use crate::output::checkpoint::{self, Checkpoint, Marks, Numbers};
 use crate::output::frames::Frames;
 use crate::output::ledger::{Entry, Ledger};
+use crate::output::lines::Lines;
+use crate::output::mark::Mark;
 use crate::output::{Error, Precision};
 use rayon::prelude::*;
 use std::io::{self, Write};
@@ -25,6 +27,7 @@ const AT_ONCE: usize = 1 << 9;
 /// What the thread is asked to do; a frame or a checkpoint is followed by the pieces of its `bytes`.
 enum Order {
     Line(Entry),
+    Series([String; 2]),
     Frame { time: f64, bytes: usize },
     Checkpoint { head: Vec<u8>, bytes: usize },
     Piece(Vec<u8>),
@@ -46,14 +49,20 @@ pub(super) struct Writer {
 
 impl Writer {
     /// Start the thread; it appends to these, saves checkpoints under this name, and tells `result.nc` the command.
-    pub fn start(frames: Frames, ledger: Ledger, checkpoint: PathBuf, command: String) -> io::Result<Writer> {
+    pub fn start(
+        frames: Frames,
+        ledger: Ledger,
+        series: [Option<Lines>; 2],
+        checkpoint: PathBuf,
+        command: String,
+    ) -> io::Result<Writer> {
         let (orders, given) = sync_channel(PIECES);
         let (free, written) = channel();
         let (costs, joined) = channel();
         let (save_costs, saved) = channel();
         let precision = frames.precision();
         let lengths = frames.fields().iter().map(|field| field.length).collect();
-        let desk = Desk { frames, ledger, checkpoint, command, given, free, costs, save_costs };
+        let desk = Desk { frames, ledger, series, checkpoint, command, given, free, costs, save_costs };
         let thread = Builder::new().name("granflow-writer".to_owned()).spawn(|| desk.work())?;
         let (orders, thread) = (Some(orders), Some(thread));
         Ok(Writer { precision, lengths, orders, written, made: 0, joined, saved, thread })
@@ -62,6 +71,11 @@ impl Writer {
     /// Append a line to the ledger.
     pub fn line(&mut self, entry: Entry) -> Result<(), Error> {
         self.send(Order::Line(entry))
+    }
+
+    /// Append lines to the tables of gauges and of sections.
+    pub fn series(&mut self, lines: [String; 2]) -> Result<(), Error> {
+        self.send(Order::Series(lines))
     }
 
     /// Append a frame; `fill` gives the numbers of a field from one on, on any thread. When this returns nothing more is
@@ -188,6 +202,7 @@ impl Drop for Writer {
 struct Desk {
     frames: Frames,
     ledger: Ledger,
+    series: [Option<Lines>; 2],
     checkpoint: PathBuf,
     command: String,
     given: Receiver<Order>,
@@ -198,16 +213,29 @@ struct Desk {
 
 impl Desk {
     fn work(self) -> Result<(Frames, Ledger), Error> {
-        let Desk { mut frames, mut ledger, checkpoint, command, given, free, costs, save_costs } = self;
+        let Desk { mut frames, mut ledger, mut series, checkpoint, command, given, free, costs, save_costs } =
+            self;
         while let Ok(order) = given.recv() {
             let pass = |bytes, out: &mut dyn Write| pass(&given, &free, bytes, out);
             match order {
                 Order::Line(entry) => ledger.append(entry)?,
+                Order::Series(lines) => {
+                    for (table, text) in series.iter_mut().zip(&lines) {
+                        table.iter_mut().try_for_each(|table| table.append(text))?;
+                    }
+                }
                 Order::Frame { time, bytes } => frames.append_from(time, |out| pass(bytes, out))?,
                 Order::Checkpoint { head, bytes } => {
                     let begin = Instant::now();
                     ledger.sync()?;
-                    let marks = Marks { frames: frames.mark(), ledger: ledger.mark() };
+                    series.iter().flatten().try_for_each(Lines::sync)?;
+                    let marks = Marks {
+                        frames: frames.mark(),
+                        ledger: ledger.mark(),
+                        series: series
+                            .each_ref()
+                            .map(|table| table.as_ref().map_or_else(Mark::default, Lines::mark)),
+                    };
                     checkpoint::write_from(&checkpoint, &head, marks, |out| pass(bytes, out))?;
                     let _ = save_costs.send(begin.elapsed().as_secs_f64()); // nobody asks at the end of a run
                 }

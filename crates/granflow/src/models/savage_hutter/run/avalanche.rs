@@ -256,6 +256,7 @@ impl<'a> Avalanche<'a, 2, granflow_geo::terrain::Terrain> {
             release: Arc::new(release),
             density: f64::NAN,
             threshold: self.threshold,
+            curvature: terrain.curvature(),
             remarks: Vec::new(),
         };
         self.run(domain, true, |cell| super::terrain::ground_at(&terrain, GRAVITY, cell))

@@ -6,14 +6,14 @@ use super::terrain::{self, Loaded};
 use crate::StartError;
 use crate::describe::{Line, axis, case, effort, range};
 use crate::memory::{Size, fits};
-use crate::model::{At, Kind};
+use crate::model::{At, Kind, Quantity};
 use crate::run::Run;
+use crate::watch::Watch;
 use granflow_case::avalanche::Material;
 use granflow_case::chute::Plan as OnChute;
 #[cfg(feature = "geo")]
 use granflow_case::terrain::{Plan as OnTerrain, TerrainScheme};
-use granflow_case::{Axis, Frames, RunPlan, Side};
-#[cfg(feature = "geo")]
+use granflow_case::{Axis, Durations, Frames, RunPlan, Side};
 #[cfg(feature = "geo")]
 use granflow_geo::terrain::{Pits, Survey};
 use granflow_model::real::CompensatedSum;
@@ -50,7 +50,7 @@ pub(crate) fn terrain(run: &RunPlan, plan: &OnTerrain) -> Result<Vec<Line>, Star
     lines.extend(mountain(&loaded, plan.material.gravity));
     let remarks: Vec<Line> = loaded.remarks.iter().map(|one| (one.kind(), one.text().to_owned())).collect();
     let mut mountain = terrain::simulate(run, plan, loaded)?;
-    lines.extend(start(run, &Start::of(run, &mut *mountain, READ, PICTURES[1], |_| true)));
+    lines.extend(start(run, &Start::of(run, &mut *mountain, READ, PICTURES[1], |_| true)?));
     lines.extend(remarks);
     Ok(lines)
 }
@@ -70,6 +70,8 @@ struct Start {
     pull: f64,
     rate: f64,
     size: Size,
+    /// The lines about gauges and sections.
+    watched: Vec<Line>,
 }
 
 impl Start {
@@ -81,27 +83,35 @@ impl Start {
         beside: f64,
         pictures: f64,
         within: impl Fn(usize) -> bool,
-    ) -> Start {
+    ) -> Result<Start, StartError> {
+        let watch = Watch::of(run, start)?;
         let pulls = start.stepper_mut().yield_ratios().into_iter().enumerate();
         let pull =
             pulls.filter(|(number, _)| within(*number)).fold(0.0, |most: f64, (_, pull)| most.max(pull));
         let (totals, rate) = (start.totals(), start.stepper().rate());
         let cells: usize = start.stepper().cells().iter().product();
-        let instants = matches!(run.output.frames, Frames::Every(_) | Frames::Ends);
+        // What passes a section is found from the state before a step, as what is shown of an instant within it.
+        let instants =
+            matches!(run.output.frames, Frames::Every(_) | Frames::Ends) || !watch.sections.is_empty();
+        let Durations { thickness, speed, pressure } = run.output.durations;
+        let durations = [thickness, speed, pressure].iter().flatten().count();
+        let kept = |map: &Quantity| map.at == At::Cells && !map.name.starts_with("duration_");
+        let watched = watched(run, start, &watch);
         let plane = start.plane();
         let line = plane.dimensions() == 1;
         let size = Size {
             cells,
             line,
             setup: start.stepper().bytes_per_cell(false) as f64 + beside,
-            run: start.bytes_per_cell(instants) as f64,
+            // Two arrays for each map of durations.
+            run: start.bytes_per_cell(instants) as f64 + 16.0 * durations as f64,
             // Components of the state, and four maps in single precision.
-            saved: 8.0 * start.stepper().components() as f64 + 16.0,
-            maps: plane.model().of_kind(Kind::Map).filter(|map| map.at == At::Cells).count(),
+            saved: 8.0 * start.stepper().components() as f64 + 16.0 + 16.0 * durations as f64,
+            maps: plane.model().of_kind(Kind::Map).filter(|map| kept(map)).count() + durations,
             frame: plane.series().iter().map(|field| field.length).sum(),
             drawn: if line { PROFILES } else { pictures },
         };
-        Start { volume: totals.volume, wet: totals.wet, pull, rate, size }
+        Ok(Start { volume: totals.volume, wet: totals.wet, pull, rate, size, watched })
     }
 }
 
@@ -113,11 +123,12 @@ const TOGETHER: usize = 1 << 18;
 fn at_start(run: &RunPlan, plan: &OnChute, mass: &Mass) -> Result<Start, StartError> {
     let [columns, rows] = plan.grid.cells();
     let cells = columns * rows;
-    if cells <= TOGETHER {
-        return Ok(Start::of(run, &mut *chute::start(run, plan)?, 0.0, PICTURES[0], |_| true));
+    // Where a gauge or a section lies only the whole can say.
+    if cells <= TOGETHER || !run.watched.is_empty() {
+        return Start::of(run, &mut *chute::start(run, plan)?, 0.0, PICTURES[0], |_| true);
     }
     let look = |part: Part, within: &dyn Fn(usize) -> bool| -> Result<Start, StartError> {
-        Ok(Start::of(run, &mut *chute::part(run, plan, part)?, 0.0, PICTURES[0], within))
+        Start::of(run, &mut *chute::part(run, plan, part)?, 0.0, PICTURES[0], within)
     };
     let few = look(Part { from: [0; 2], cells: [columns.min(3), rows.min(3)] }, &|_| true)?.size;
     fits(cells, few.setup as usize)?;
@@ -126,6 +137,7 @@ fn at_start(run: &RunPlan, plan: &OnChute, mass: &Mass) -> Result<Start, StartEr
         wet: mass.wet,
         pull: 0.0,
         rate: 0.0,
+        watched: Vec::new(),
         size: Size { cells, frame: few.frame / few.cells * cells, ..few },
     };
     let across = columns.min(TOGETHER);
@@ -170,13 +182,37 @@ impl Mass {
 }
 
 fn start(run: &RunPlan, start: &Start) -> Vec<Line> {
-    let Start { volume, wet, pull, rate, size } = start;
+    let Start { volume, wet, pull, rate, size, watched } = start;
     let verdict = if *pull > 1.0 { "it will start" } else { "it rests" };
     let mut lines = vec![
         ("mass", format!("{volume:.6} in {wet} cells")),
         ("pull", format!("at most {pull:.6} of what friction holds: {verdict}")),
     ];
+    lines.extend(watched.iter().cloned());
     lines.extend(effort(run, size, *rate));
+    lines
+}
+
+/// Where it is looked at, and how often.
+fn watched(run: &RunPlan, start: &dyn Run, watch: &Watch) -> Vec<Line> {
+    let plane = start.plane();
+    let at = |cell: usize| {
+        let (x, y) = (plane.x[cell % plane.x.len()], plane.y.get(cell / plane.x.len()));
+        y.map_or(format!("{x}"), |y| format!("{x}, {y}"))
+    };
+    let gauges = watch.gauges.iter();
+    let mut lines: Vec<Line> =
+        gauges.map(|(name, cell)| ("gauge", format!("{name}, the cell at ({})", at(*cell)))).collect();
+    let sections = watch.sections.iter();
+    lines.extend(
+        sections.map(|one| ("section", format!("{}, the faces of {} cells", one.name, one.cells.len()))),
+    );
+    if !watch.is_empty() {
+        let often =
+            run.watched.every.map_or("after every step".to_owned(), |every| format!("every {every} in time"));
+        lines.push(("", format!("looked at {often}, and at the instants of the frames")));
+    }
+    lines.extend(watch.notes.iter().map(|note| ("note", note.clone())));
     lines
 }
 

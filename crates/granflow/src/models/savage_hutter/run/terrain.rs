@@ -69,6 +69,7 @@ pub(super) fn simulate(
         release: Arc::new(thickness),
         density: plan.material.density,
         threshold: run.output.threshold,
+        curvature: curvature_of(plan),
         remarks,
     };
     let plane = Plane::of(&grid, Arc::new(domain));
@@ -203,7 +204,7 @@ fn bed(run: &RunPlan, plan: &Plan, remarks: &mut Vec<Remark>) -> Result<(Raster,
     };
     let reading = Reading::of(&plan.dem, crs.as_ref())?;
     remarks.extend(reading.notes);
-    let bed = reading.raster;
+    let bed = part(run, plan, reading.raster)?;
     if bed.crs.is_none() {
         remarks.push(Remark::Note(format!(
             "{}: it says no coordinate reference system; its coordinates were taken as metres (crs = \"EPSG:xxxx\" in \
@@ -224,6 +225,27 @@ fn bed(run: &RunPlan, plan: &Plan, remarks: &mut Vec<Remark>) -> Result<(Raster,
     Ok((bed.resample(cell), crs))
 }
 
+/// The part of the elevation model that the case asks for.
+fn part(run: &RunPlan, plan: &Plan, whole: Raster) -> Result<Raster, StartError> {
+    let Some(region) = plan.region else { return Ok(whole) };
+    let refused = |message: String| {
+        let (x, y) = ([whole.west, whole.east()], [whole.south, whole.north()]);
+        let cure = format!("the raster has x {} to {}, y {} to {}", x[0], x[1], y[0], y[1]);
+        StartError::from(run.fault("terrain.region", message, &cure))
+    };
+    let part = whole.cropped(region).ok_or_else(|| refused("no cell of the raster lies in it".to_owned()))?;
+    let Raster { columns, rows, .. } = part;
+    if columns < 3 || rows < 3 {
+        return Err(refused(format!(
+            "it leaves {columns} x {rows} cells, a run needs at least 3 along each side"
+        )));
+    }
+    if part.range().is_none() {
+        return Err(refused("none of its cells has an elevation".to_owned()));
+    }
+    Ok(part)
+}
+
 /// The bed with the window of the case around its cells.
 fn curved(run: &RunPlan, plan: &Plan, bed: Raster) -> Result<Terrain, StartError> {
     let [width, height] = [bed.columns, bed.rows].map(|count| count as f64 * bed.cell);
@@ -232,7 +254,12 @@ fn curved(run: &RunPlan, plan: &Plan, bed: Raster) -> Result<Terrain, StartError
         let cure = "the window spans a few cells, for instance length = \"20 m\"";
         return Err(run.fault("terrain.curvature.length", message, cure).into());
     }
-    Ok(Terrain::new(bed, plan.curvature.map_or(Curvature::Off, Curvature::Length)))
+    Ok(Terrain::new(bed, curvature_of(plan)))
+}
+
+/// The length over which a case takes the derivatives of the bed.
+fn curvature_of(plan: &Plan) -> Curvature {
+    plan.curvature.map_or(Curvature::Off, Curvature::Length)
 }
 
 /// Adds the volume per plan area of one release.

@@ -17,7 +17,7 @@ fn store(folder: &Path, precision: Precision) -> Frames {
 
 fn writer(folder: &Path, frames: Frames) -> Writer {
     let ledger = Ledger::create(&folder.join("mass.csv"), OUTLETS).unwrap();
-    Writer::start(frames, ledger, folder.join("state.bin"), "test".to_owned()).unwrap()
+    Writer::start(frames, ledger, [None, None], folder.join("state.bin"), "test".to_owned()).unwrap()
 }
 
 fn value(time: f64, field: usize, number: usize) -> f64 {
@@ -63,7 +63,7 @@ fn the_files_are_those_that_would_be_written_at_once() {
                 .collect();
             frames.append(time, &fields.iter().map(Vec::as_slice).collect::<Vec<_>>()).unwrap();
             ledger.append(entry(step)).unwrap();
-            let marks = Marks { frames: frames.mark(), ledger: ledger.mark() };
+            let marks = Marks { frames: frames.mark(), ledger: ledger.mark(), ..Marks::default() };
             saved(step, &state).write(&at_once.path().join("state.bin"), marks).unwrap();
         }
         let (kept, lines) = writer.end().unwrap();
