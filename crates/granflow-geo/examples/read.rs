@@ -27,7 +27,7 @@ fn main() {
 
 fn raster(file: &str, crs: Option<&str>) -> Result<String, Box<dyn Error>> {
     let crs = crs.map(Crs::parse).transpose()?;
-    let Reading { raster, notes } = Reading::of(Path::new(file), crs.as_ref())?;
+    let Reading { raster, notes, .. } = Reading::of(Path::new(file), crs.as_ref())?;
     let Raster { columns, rows, west, south, cell, values, crs } = raster;
     let notes: Vec<String> = notes.iter().map(ToString::to_string).collect();
     let values: Vec<Option<f64>> = values.iter().map(|z| (!z.is_nan()).then_some(*z)).collect();

@@ -54,6 +54,8 @@ pub struct Reading {
     pub raster: Raster,
     /// One sentence each, with the name of the file.
     pub notes: Vec<Remark>,
+    /// Bytes that reading held at its peak.
+    pub bytes: usize,
 }
 
 impl Reading {
@@ -62,8 +64,8 @@ impl Reading {
     /// # Errors
     /// As [`Raster::read_in`].
     pub fn of(path: &Path, crs: Option<&Crs>) -> Result<Reading, RasterError> {
-        let (raster, declared, notes) = Self::stored(path, crs)?;
-        Reading::in_metres(path, raster, declared, crs, notes)
+        let (raster, declared, notes, bytes) = Self::stored(path, crs)?;
+        Ok(Reading { bytes, ..Reading::in_metres(path, raster, declared, crs, notes)? })
     }
 
     /// The same of numbers that are no heights, say coefficients of friction: a unit of heights is not applied.
@@ -71,24 +73,27 @@ impl Reading {
     /// # Errors
     /// As [`Raster::read_in`].
     pub fn of_numbers(path: &Path, crs: Option<&Crs>) -> Result<Reading, RasterError> {
-        let (raster, declared, notes) = Self::stored(path, crs)?;
+        let (raster, declared, notes, bytes) = Self::stored(path, crs)?;
         let declared = Declared { unit: None, heights: Some(Heights::Unit(1.0)), ..declared };
-        Reading::in_metres(path, raster, declared, crs, notes)
+        Ok(Reading { bytes, ..Reading::in_metres(path, raster, declared, crs, notes)? })
     }
 
-    /// What is stored, and what is declared of it.
-    fn stored(path: &Path, crs: Option<&Crs>) -> Result<(Raster, Declared, Vec<Remark>), RasterError> {
+    /// What is stored, what is declared of it, and the bytes that reading held.
+    fn stored(path: &Path, crs: Option<&Crs>) -> Result<(Raster, Declared, Vec<Remark>, usize), RasterError> {
         let mut magic = [0; 4];
         let file = std::fs::File::open(path).and_then(|mut file| file.read(&mut magic));
         file.map_err(|source| RasterError::Io { path: path.into(), source })?;
         let beside = Declared::beside(path)?;
         let mut notes = Vec::new();
-        let (raster, declared) = if is_tiff(&magic) {
-            geotiff::read(path, beside, crs, &mut notes)?
-        } else {
-            ascii::read(path, beside, crs, &mut notes)?
-        };
-        Ok((raster, declared, notes))
+        if is_tiff(&magic) {
+            let (raster, declared, bytes) = geotiff::read(path, beside, crs, &mut notes)?;
+            return Ok((raster, declared, notes, bytes));
+        }
+        // The text, and its numbers.
+        let size = std::fs::metadata(path).map_or(0, |file| file.len() as usize);
+        let (raster, declared) = ascii::read(path, beside, crs, &mut notes)?;
+        let bytes = size + size_of_val(raster.values.as_slice());
+        Ok((raster, declared, notes, bytes))
     }
 
     /// The raster with what is declared of its values applied, checked.
@@ -106,7 +111,7 @@ impl Reading {
         if factor != 1.0 || offset != 0.0 {
             raster.values.iter_mut().for_each(|value| *value = *value * factor + offset);
         }
-        Ok(Reading { raster, notes })
+        Ok(Reading { raster, notes, bytes: 0 })
     }
 }
 
@@ -140,7 +145,8 @@ impl Raster {
     pub fn from_bytes(name: &Path, bytes: Vec<u8>, crs: Option<&Crs>) -> Result<Raster, RasterError> {
         let mut notes = Vec::new();
         let (raster, declared) = if is_tiff(&bytes) {
-            geotiff::from_bytes(name, bytes, crs, &mut notes)?
+            let (raster, declared, _) = geotiff::from_bytes(name, bytes, crs, &mut notes)?;
+            (raster, declared)
         } else {
             ascii::from_bytes(name, &bytes, (None, Declared::default()), crs, &mut notes)?
         };

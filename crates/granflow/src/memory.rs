@@ -22,6 +22,8 @@ pub(crate) struct Size {
     pub cells: usize,
     /// One dimension.
     pub line: bool,
+    /// Bytes while the files of a mountain are read.
+    pub reading: f64,
     /// Bytes for each cell while it is set up, and while it computes.
     pub setup: f64,
     pub run: f64,
@@ -52,7 +54,7 @@ impl Size {
         // There are two checkpoints at least.
         let pieces = PIECES.min(self.frame_bytes(run) * frames + 2.0 * self.saved * cells);
         let end = if self.line { self.line_end(run, frames) } else { self.plane_end(run) };
-        PROGRAM + (pieces + (self.run * cells).max(end)).max(self.setup * cells)
+        PROGRAM + (pieces + (self.run * cells).max(end)).max(self.setup * cells).max(self.reading)
     }
 
     /// Bytes while the files of a line are made.

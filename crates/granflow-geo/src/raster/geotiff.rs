@@ -21,7 +21,7 @@ pub(super) fn read(
     beside: Declared,
     given: Option<&Crs>,
     notes: &mut Vec<Remark>,
-) -> Result<(Raster, Declared), RasterError> {
+) -> Result<(Raster, Declared, usize), RasterError> {
     let size = std::fs::metadata(path).map_err(|source| RasterError::Io { path: path.into(), source })?.len();
     decoded(path, (GeoTiffFile::open(path), size), beside, given, notes)
 }
@@ -32,7 +32,7 @@ pub(super) fn from_bytes(
     bytes: Vec<u8>,
     given: Option<&Crs>,
     notes: &mut Vec<Remark>,
-) -> Result<(Raster, Declared), RasterError> {
+) -> Result<(Raster, Declared, usize), RasterError> {
     let size = bytes.len() as u64;
     decoded(name, (GeoTiffFile::from_bytes(bytes), size), Declared::default(), given, notes)
 }
@@ -43,7 +43,7 @@ fn decoded(
     beside: Declared,
     given: Option<&Crs>,
     notes: &mut Vec<Remark>,
-) -> Result<(Raster, Declared), RasterError> {
+) -> Result<(Raster, Declared, usize), RasterError> {
     let error = |problem: &dyn std::fmt::Display| RasterError::geotiff(path, problem);
     let file = file.map_err(|e| match e {
         geotiff_reader::Error::NotGeoTiff => error(&unplaced(path)),
@@ -66,7 +66,20 @@ fn decoded(
     if (cell - height.abs()).abs() > 1e-6 * cell {
         return Err(RasterError::NotSquare { path: path.into(), width: cell, height: height.abs() });
     }
-    Ok((raster, declared))
+    let bytes = held(&file, raster.values.len());
+    Ok((raster, declared, bytes))
+}
+
+/// Decoded blocks that the reader keeps \[bytes\].
+const BLOCKS: usize = 64 << 20;
+
+/// Bytes held while so many cells are read: the numbers, those of the file, and of a packed file its decoded blocks.
+fn held(file: &GeoTiffFile, cells: usize) -> usize {
+    let Ok(ifd) = file.tiff().ifd(file.base_ifd_index()) else { return 8 * cells };
+    let bits = ifd.bits_per_sample().ok().and_then(|bits| bits.first().copied());
+    let sample = bits.map_or(1, |bits| usize::from(bits).div_ceil(8));
+    let blocks = if ifd.compression() == 1 { 0 } else { BLOCKS.min(sample * cells) };
+    (8 + sample) * cells + blocks
 }
 
 /// x of the western edge, y of the first row's outer edge, width and height of a cell, the height negative where the first

@@ -217,7 +217,7 @@ fn unmarked(grid: CellGrid) -> Area {
 
 /// A raster of thickness.
 fn raster(path: PathBuf, notes: &mut Vec<String>) -> Result<Side, CompareError> {
-    let Reading { raster, notes: read } = Reading::of(&path, None)?;
+    let Reading { raster, notes: read, .. } = Reading::of(&path, None)?;
     notes.extend(read.iter().map(|remark| remark.text().to_owned()));
     if let Some(cell) = raster.values.iter().position(|h| *h < 0.0) {
         let [column, row] = raster.place(cell);

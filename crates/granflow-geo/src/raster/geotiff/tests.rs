@@ -203,7 +203,7 @@ fn the_sidecar_comes_before_the_file() {
     let sidecar = "<PAMDataset><SRS>EPSG:31287</SRS><GeoTransform>10,5,0,90,0,-5</GeoTransform>\
         <PAMRasterBand band=\"1\"><NoDataValue>1</NoDataValue><UnitType>ft</UnitType><Scale>10</Scale></PAMRasterBand></PAMDataset>";
     std::fs::write(folder.path().join("dem.tif.aux.xml"), sidecar).unwrap();
-    let Reading { raster, notes } = Reading::of(&path, None).unwrap();
+    let Reading { raster, notes, .. } = Reading::of(&path, None).unwrap();
     assert_eq!((raster.west, raster.south, raster.cell), (10.0, 80.0, 5.0));
     assert_eq!(raster.crs.as_ref().and_then(|crs| crs.epsg), Some(31287));
     assert_eq!(absent(&raster), [true, false, false, false, false, false, false, false]);

@@ -77,6 +77,7 @@ fn size<const D: usize>(run: &RunPlan, nodes: usize, sources: usize) -> Size {
     let drawn = if D == 1 { PROFILES } else { PICTURES };
     let bytes = (simulation + beside) as f64 + sources as f64 / nodes as f64;
     Size {
+        reading: 0.0,
         cells: nodes,
         line: D == 1,
         setup: bytes,

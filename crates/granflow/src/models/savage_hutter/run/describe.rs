@@ -49,13 +49,17 @@ pub(crate) fn terrain(run: &RunPlan, plan: &OnTerrain) -> Result<Vec<Line>, Star
     let loaded = terrain::load(run, plan)?;
     lines.extend(mountain(&loaded, plan.material.gravity));
     let remarks: Vec<Line> = loaded.remarks.iter().map(|one| (one.kind(), one.text().to_owned())).collect();
+    let reading = loaded.reading as f64;
     let mut mountain = terrain::simulate(run, plan, loaded)?;
-    lines.extend(start(run, &Start::of(run, &mut *mountain, READ, PICTURES[1], |_| true)?));
+    let mut begun = Start::of(run, &mut *mountain, READ, PICTURES[1], |_| true)?;
+    begun.size.reading = reading;
+    lines.extend(start(run, &begun));
     lines.extend(remarks);
     Ok(lines)
 }
 
 /// Bytes for each cell of what is read before a simulation of a mountain is made: its elevation.
+#[cfg(feature = "geo")]
 const READ: f64 = 8.0;
 /// What pictures of a plane and of a mountain take at once \[bytes\], and numbers that figures of a line hold for each cell and
 /// frame: measured.
@@ -102,6 +106,7 @@ impl Start {
         let size = Size {
             cells,
             line,
+            reading: 0.0,
             setup: start.stepper().bytes_per_cell(false) as f64 + beside,
             // Two arrays for each map of durations.
             run: start.bytes_per_cell(instants) as f64 + 16.0 * durations as f64,

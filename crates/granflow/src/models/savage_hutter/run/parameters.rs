@@ -72,7 +72,7 @@ fn values(
 ) -> Result<Vec<f64>, StartError> {
     let (mut values, elsewhere) = match place {
         Place::Raster(path, elsewhere) => {
-            let Reading { raster, notes } = Reading::of_numbers(path, bed.crs.as_ref().or(crs))?;
+            let Reading { raster, notes, .. } = Reading::of_numbers(path, bed.crs.as_ref().or(crs))?;
             remarks.extend(notes);
             raster.same_system(path, bed)?;
             let at = |k: usize| {

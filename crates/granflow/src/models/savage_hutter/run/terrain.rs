@@ -45,6 +45,8 @@ pub(super) struct Loaded {
     pub parameters: InCells,
     /// What comes in the course of the run.
     pub supply: Supply,
+    /// Bytes that were held while the elevation model was read.
+    pub reading: usize,
 }
 
 /// The run on a mountain that was read. The derivatives of the bed are fitted cell by cell as the simulation asks for its
@@ -165,14 +167,14 @@ pub(crate) fn ground_at(
 /// Reads the elevation and the releases.
 pub(super) fn load(run: &RunPlan, plan: &Plan) -> Result<Loaded, StartError> {
     let mut remarks = Vec::new();
-    let (bed, crs) = bed(run, plan, &mut remarks)?;
+    let (bed, crs, reading) = bed(run, plan, &mut remarks)?;
     let survey = Survey::of(&bed);
     remarks.extend(survey.warnings(&plan.dem.display().to_string()));
     let parameters = InCells::read(run, &plan.material, (&bed, crs.as_ref()), &mut remarks)?;
     let terrain = curved(run, plan, bed)?;
     let (release, parts) = (Sparse::default(), Vec::new());
     let supply = Supply { threshold: run.output.threshold, ..Supply::default() };
-    let mut loaded = Loaded { terrain, release, parts, remarks, survey, parameters, supply };
+    let mut loaded = Loaded { terrain, release, parts, remarks, survey, parameters, supply, reading };
     for one in &plan.releases {
         add(&mut loaded, one, crs.as_ref())?;
     }
@@ -194,8 +196,12 @@ fn trim() {
     }
 }
 
-/// The elevation on the cells that the case asks for, and the system that the case gives.
-fn bed(run: &RunPlan, plan: &Plan, remarks: &mut Vec<Remark>) -> Result<(Raster, Option<Crs>), StartError> {
+/// The elevation on the cells that the case asks for, the system that the case gives, and the bytes that reading held.
+fn bed(
+    run: &RunPlan,
+    plan: &Plan,
+    remarks: &mut Vec<Remark>,
+) -> Result<(Raster, Option<Crs>, usize), StartError> {
     let crs = match &plan.crs {
         Some(text) => Some(Crs::parse(text).map_err(|error| {
             run.fault("terrain.crs", error.to_string(), "write it as crs = \"EPSG:31287\"")
@@ -204,6 +210,7 @@ fn bed(run: &RunPlan, plan: &Plan, remarks: &mut Vec<Remark>) -> Result<(Raster,
     };
     let reading = Reading::of(&plan.dem, crs.as_ref())?;
     remarks.extend(reading.notes);
+    let held = reading.bytes;
     let bed = part(run, plan, reading.raster)?;
     if bed.crs.is_none() {
         remarks.push(Remark::Note(format!(
@@ -212,7 +219,7 @@ fn bed(run: &RunPlan, plan: &Plan, remarks: &mut Vec<Remark>) -> Result<(Raster,
             plan.dem.display()
         )));
     }
-    let Some(cell) = plan.cell else { return Ok((bed, crs)) };
+    let Some(cell) = plan.cell else { return Ok((bed, crs, held)) };
     let [width, height] = [bed.columns, bed.rows].map(|count| count as f64 * bed.cell);
     let [columns, rows] = [width / cell, height / cell];
     if columns < 3.0 || rows < 3.0 || columns * rows > MAX_CELLS {
@@ -222,7 +229,7 @@ fn bed(run: &RunPlan, plan: &Plan, remarks: &mut Vec<Remark>) -> Result<(Raster,
         let cure = "allowed are at least 3 along each side, and not more than a machine holds";
         return Err(run.fault("terrain.cell", message, cure).into());
     }
-    Ok((bed.resample(cell), crs))
+    Ok((bed.resample(cell), crs, held))
 }
 
 /// The part of the elevation model that the case asks for.
