@@ -1,7 +1,7 @@
 //! Laws of dense granular flow, in which friction grows with the speed and falls with the thickness.
 
 use super::Resistance;
-use crate::real::power;
+use crate::real::{Real, power};
 use crate::scheme::components;
 
 /// Pouliquen and Forterre's law with a start and a stop (J. Fluid Mech. 453, 2002, eqs. 3.1-3.6), Fr = |V|/sqrt(N+ h):
@@ -38,9 +38,9 @@ impl PouliquenForterre {
         let rise = mu2 - mu1;
         let by_thickness = rise * (self.length / (self.length + thickness));
         let (stop, start) = (mu1 + by_thickness, mu3 + by_thickness);
-        let speed = speed_squared.sqrt();
+        let speed = Real::sqrt(speed_squared);
         // beta sqrt(N h): the speed at Fr = beta.
-        let least = self.beta * (load * thickness).sqrt();
+        let least = self.beta * Real::sqrt(load * thickness);
         let holding = start * weight;
         if least <= speed && speed > 0.0 {
             // (mu - mu1) N/|V|: what grows with the speed, to be solved for implicitly.
@@ -81,8 +81,8 @@ impl MuI {
         weight: f64,
     ) -> Resistance<f64> {
         let per_speed = 2.5 * self.grain;
-        let slow = self.i0 * thickness * (self.phi * load * thickness).sqrt();
-        let sum = per_speed * speed_squared.sqrt() + slow;
+        let slow = self.i0 * thickness * Real::sqrt(self.phi * load * thickness);
+        let sum = per_speed * Real::sqrt(speed_squared) + slow;
         let rise = (self.mu2 - self.mu1) * per_speed * load;
         let viscous = if sum <= 0.0 { 0.0 } else { rise / sum };
         Resistance { dry: self.mu1 * load, viscous, drag: 0.0, holding: self.mu1 * weight }
