@@ -28,6 +28,9 @@ pub(crate) fn read(files: &dyn FileAccess, path: &Path, [nx, ny]: [usize; 2]) ->
 /// The numbers of a text table, with its rows and columns; `#` begins a comment.
 pub(crate) fn read_text(bytes: &[u8]) -> Result<(Vec<usize>, Vec<f64>), String> {
     let text = std::str::from_utf8(bytes).map_err(|_| "it is not text".to_owned())?;
+    let text = text.trim_start_matches('\u{feff}');
+    // Where something else parts the numbers, a comma is a decimal point.
+    let text = if text.contains([';', '\t']) { text.replace(',', ".") } else { text.to_owned() };
     let mut values = Vec::new();
     let (mut rows, mut columns) = (0, None);
     for (number, line) in text.lines().enumerate() {

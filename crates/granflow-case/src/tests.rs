@@ -91,7 +91,7 @@ fn the_silo() {
     assert_eq!((silo.scheme.name, silo.scheme.film), (avalanche::SchemeName::Verfahren5, 0.0));
     let tan = 18f64.to_radians().tan();
     let material = silo.material;
-    assert_eq!((material.mu, material.gravity, material.density), (tan, 1.0, 1.0));
+    assert_eq!((material.mu, material.gravity, material.density), (Some(tan), 1.0, 1.0));
     assert_eq!(material.pressure_coefficient, 1.0 + 2.0 * tan * tan);
     assert!(matches!(material.law, AnyLaw::Coulomb(law) if law.mu == tan));
     assert_eq!((silo.epsilon, silo.eta), (0.4, 1.0));
@@ -125,7 +125,7 @@ fn the_numbers_of_a_law() {
     };
     let voellmy = law("voellmy={angle=\"45 deg\",xi=1000}");
     assert!(matches!(voellmy.law, AnyLaw::Voellmy(law) if law.xi == 1000.0 && law.gravity == 9.0));
-    assert_eq!((voellmy.friction, voellmy.mu), ("voellmy", 45f64.to_radians().tan()));
+    assert_eq!((voellmy.friction, voellmy.mu), ("voellmy", Some(45f64.to_radians().tan())));
     let cohesion = law("cohesion={mu=0.5,tau0=3}");
     assert!(matches!(cohesion.law, AnyLaw::Cohesion(law) if law.bond == 1.5 && law.mu == 0.5));
     let samosat = law("samosat={tau0=1}");

@@ -189,11 +189,11 @@ impl Raster {
         self.values[row * self.columns + column]
     }
 
-    /// The index of the cell that holds a place, if there is one.
+    /// The index of the cell that holds a place, if there is one; all four edges belong to the raster.
     pub fn cell_at(&self, [x, y]: [f64; 2]) -> Option<usize> {
-        let [column, row] = [(x - self.west) / self.cell, (y - self.south) / self.cell].map(f64::floor);
-        let inside = column >= 0.0 && row >= 0.0 && column < self.columns as f64 && row < self.rows as f64;
-        inside.then(|| row as usize * self.columns + column as usize)
+        let inside = (self.west..=self.east()).contains(&x) && (self.south..=self.north()).contains(&y);
+        let [column, row] = [(x - self.west) / self.cell, (y - self.south) / self.cell].map(|at| at as usize);
+        inside.then(|| row.min(self.rows - 1) * self.columns + column.min(self.columns - 1))
     }
 
     /// Column and row of the cell at an index of [`Raster::values`].

@@ -79,6 +79,17 @@ pub trait Run: Send + Sync {
     /// Keep maps from now on that say for how long each of these was exceeded; they are among [`Run::peaks`].
     fn track_durations(&mut self, exceeded: &[Exceeded]);
 
+    /// Let what comes from outside at this time, a late release say, come now; the next step would do it at its begin.
+    fn bring(&mut self) {}
+    /// Nothing that acts from outside is still to come or to change.
+    fn is_settled(&self) -> bool {
+        true
+    }
+    /// The time at which something last came from outside.
+    fn came(&self) -> f64 {
+        0.0
+    }
+
     /// One step, not beyond time `until`; returns its length. It is infinite where nothing can move and `until` is
     /// infinite: the state is final.
     ///
@@ -152,6 +163,7 @@ pub trait Run: Send + Sync {
         assert!(!time.is_nan(), "the time to step to is not a number");
         self.stepper_mut().show_end();
         while self.time() < time && self.step(time)?.is_finite() {}
+        self.bring();
         Ok(())
     }
     /// Step until everything is at rest, or to time `limit`; says whether it is at rest.
@@ -164,7 +176,10 @@ pub trait Run: Send + Sync {
     fn to_rest(&mut self, limit: f64) -> Result<bool, Failure> {
         assert!(!limit.is_nan(), "the time to step to is not a number");
         self.stepper_mut().show_end();
-        while !self.at_rest() && self.time() < limit && self.step(limit)?.is_finite() {}
+        self.bring();
+        while !self.at_rest() && self.time() < limit && self.step(limit)?.is_finite() {
+            self.bring();
+        }
         Ok(self.at_rest())
     }
 }

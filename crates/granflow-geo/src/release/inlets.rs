@@ -1,7 +1,8 @@
 //! Cells through which mass enters: along a line, or under polygons.
 
-use super::{Layer, ReleaseError, coverage, same_system, sound};
+use super::{LOST, Layer, ReleaseError, coverage, same_system, sound};
 use crate::raster::Raster;
+use geo::{Area, BoundingRect, unary_union};
 use std::collections::BTreeMap;
 
 /// The cells of `template` that a line of points [x, y] passes, each with its share of the length.
@@ -31,22 +32,30 @@ impl Layer {
     /// The cells of `template` under these polygons, each with its share of the area.
     ///
     /// # Errors
-    /// [`ReleaseError::Shape`] for rings that cross themselves, the system as for a release, [`ReleaseError::Nothing`] where no cell
-    /// with a value lies under them.
+    /// As for a release: rings that cross themselves, another system, polygons beyond the edge of `template` or on nodata.
     pub fn cells(self, template: &Raster) -> Result<Vec<(usize, f64)>, ReleaseError> {
         same_system(&self, template)?;
-        let mut areas: BTreeMap<usize, f64> = BTreeMap::new();
+        let mut polygons = Vec::new();
         for feature in &self.features {
-            for polygon in sound(&self.name, feature.number, feature.polygons.clone())? {
-                for (cell, share) in coverage::shares(&polygon, template) {
-                    if !template.values[cell].is_nan() {
-                        *areas.entry(cell).or_default() += share;
-                    }
-                }
+            polygons.extend(sound(&self.name, feature.number, feature.polygons.clone())?);
+        }
+        let whole = unary_union(&polygons);
+        let mut areas: BTreeMap<usize, f64> = BTreeMap::new();
+        for (cell, share) in whole.iter().flat_map(|polygon| coverage::shares(polygon, template)) {
+            if !template.values[cell].is_nan() {
+                *areas.entry(cell).or_default() += share;
             }
         }
-        let problem = "no cell of the terrain with a value lies under its polygons";
-        shares(areas).ok_or_else(|| ReleaseError::Nothing { path: self.name.clone(), problem })
+        let covered = areas.values().sum::<f64>() * template.cell * template.cell;
+        let Some(extent) = whole.bounding_rect() else {
+            return Err(ReleaseError::Nothing { path: self.name.clone(), problem: "it holds no polygon" });
+        };
+        let lost = 1.0 - covered / whole.unsigned_area();
+        let (low, high) = (extent.min(), extent.max());
+        match shares(areas).filter(|_| lost <= LOST) {
+            Some(shares) => Ok(shares),
+            None => Err(ReleaseError::outside(&self.name, [low.x, low.y, high.x, high.y], template, lost)),
+        }
     }
 }
 

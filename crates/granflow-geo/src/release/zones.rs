@@ -2,10 +2,12 @@
 
 use super::{Layer, ReleaseError, attribute, coverage, same_system, sound};
 use crate::raster::Raster;
+use geo::{Polygon, unary_union};
+use std::collections::BTreeMap;
 
 impl Layer {
-    /// The number that `name` gives in each cell of `template`: that of the polygon which covers most of the cell, of several the
-    /// first; not a number where more of the cell is bare than that polygon covers.
+    /// The number that `name` gives in each cell of `template`: that of the feature which covers most of the cell, of several the
+    /// first; not a number where more of the cell is bare than that feature covers.
     ///
     /// # Errors
     /// [`ReleaseError::Shape`] for rings that cross themselves, [`ReleaseError::Attribute`] for a missing attribute,
@@ -15,20 +17,23 @@ impl Layer {
         same_system(&self, template)?;
         let count = template.values.len();
         let (mut values, mut largest, mut bare) = (vec![f64::NAN; count], vec![0.0; count], vec![1.0; count]);
+        let mut all = Vec::new();
         for feature in &self.features {
             let (name, text, value) = attribute(path, feature, name)?;
             let Some(value) = value.filter(|value| value.is_finite()) else {
                 let (name, found) = (name.to_owned(), text.to_owned());
                 return Err(ReleaseError::Value { path: path.into(), feature: feature.number, name, found });
             };
-            for polygon in sound(path, feature.number, feature.polygons.clone())? {
-                for (cell, share) in coverage::shares(&polygon, template) {
-                    bare[cell] -= share;
-                    if share > largest[cell] {
-                        (largest[cell], values[cell]) = (share, value);
-                    }
+            let polygons = sound(path, feature.number, feature.polygons.clone())?;
+            for (cell, share) in covered(&polygons, template) {
+                if share > largest[cell] {
+                    (largest[cell], values[cell]) = (share, value);
                 }
             }
+            all.extend(polygons);
+        }
+        for (cell, share) in covered(&all, template) {
+            bare[cell] -= share;
         }
         for (value, _) in
             values.iter_mut().zip(largest.iter().zip(&bare)).filter(|(_, (share, bare))| share < bare)
@@ -37,6 +42,17 @@ impl Layer {
         }
         Ok(values)
     }
+}
+
+/// The share of each cell that polygons cover together.
+fn covered(polygons: &[Polygon], template: &Raster) -> BTreeMap<usize, f64> {
+    let mut shares: BTreeMap<usize, f64> = BTreeMap::new();
+    for polygon in unary_union(polygons) {
+        for (cell, share) in coverage::shares(&polygon, template) {
+            *shares.entry(cell).or_default() += share;
+        }
+    }
+    shares
 }
 
 #[cfg(test)]
@@ -71,6 +87,13 @@ mod tests {
             assert_eq!(row[..3], [0.3, 0.3, 0.5]);
             assert!(row[3].is_nan(), "four tenths of it are covered: {row:?}");
         }
+    }
+
+    #[test]
+    fn what_polygons_cover_together_is_not_counted_twice() {
+        let part = [[0.0, 0.0], [0.4, 3.0]];
+        let twice = layer(&[("0.9", part), ("0.9", part)]).zones("mu", &template()).unwrap();
+        assert!(twice[0].is_nan(), "six tenths of it are bare: {}", twice[0]);
     }
 
     #[test]

@@ -219,13 +219,19 @@ fn unmarked(grid: CellGrid) -> Area {
 fn raster(path: PathBuf, notes: &mut Vec<String>) -> Result<Side, CompareError> {
     let Reading { raster, notes: read, .. } = Reading::of(&path, None)?;
     notes.extend(read.iter().map(|remark| remark.text().to_owned()));
-    if let Some(cell) = raster.values.iter().position(|h| *h < 0.0) {
-        let [column, row] = raster.place(cell);
-        let (x, y, found) = (raster.x(column), raster.y(row), raster.values[cell]);
-        return Err(ReleaseError::Negative { path, x, y, found }.into());
+    // A difference of elevation models falls where mass was taken up.
+    let below: Vec<f64> = raster.values.iter().copied().filter(|h| *h < 0.0).collect();
+    if !below.is_empty() {
+        let volume = -below.iter().sum::<f64>() * raster.cell * raster.cell;
+        notes.push(format!(
+            "{}: {} cells are below 0, {volume:.1} m3 in all: they count as bare, and their volume is left out",
+            path.display(),
+            below.len()
+        ));
     }
     let grid = CellGrid::from(&raster);
-    let (crs, values) = (raster.crs, raster.values);
+    let crs = raster.crs;
+    let values = raster.values.into_iter().map(|h| if h < 0.0 { 0.0 } else { h }).collect();
     Ok(Side { path, area: unmarked(grid), crs, volume: None, kind: Kind::Raster(grid, values) })
 }
 

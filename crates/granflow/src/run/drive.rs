@@ -48,6 +48,7 @@ pub fn drive(run: &mut dyn Run, ends: &Ends, sinks: &mut [&mut dyn Sink]) -> Res
     if let Some(Until::Rest { trickle: Some(thickness), .. }) = ends.until {
         run.track_trickle(thickness);
     }
+    run.bring();
     law::check_state(run)?;
     let reason = steps(run, ends, sinks)?;
     law::check_end(run)?;
@@ -104,17 +105,22 @@ const ROUNDING: f64 = 1e-9;
 fn show_instants(run: &mut dyn Run, sinks: &mut [&mut dyn Sink], begin: f64) -> Result<bool, SinkError> {
     let end = run.time();
     let near = ROUNDING * (end - begin);
-    let mut first = true;
+    let (mut first, mut brought) = (true, false);
     loop {
         let instant = next_instant(sinks);
         let all = instant > end + near;
         if all || (!first && wants_end(sinks)) {
             run.stepper_mut().show_end();
+            run.bring();
             return Ok(all);
         }
         first = false;
         let at_end = instant < begin || end - instant <= near;
         run.stepper_mut().show(if at_end { end } else { instant });
+        if at_end && !std::mem::replace(&mut brought, true) {
+            // At the end of the step what comes then is there; within it, it was not.
+            run.bring();
+        }
         for sink in sinks.iter_mut().filter(|sink| sink.next_instant() == instant) {
             sink.at_instant(run)?;
             assert!(sink.next_instant() > instant, "a sink waits again for an instant that it was shown");
@@ -126,6 +132,7 @@ fn show_instants(run: &mut dyn Run, sinks: &mut [&mut dyn Sink], begin: f64) -> 
 pub fn reached(run: &dyn Run, ends: &Ends) -> Option<StopReason> {
     let record = run.record();
     match ends.until {
+        Some(Until::Rest { .. }) if !run.is_settled() => {}
         Some(Until::Rest { .. }) if run.at_rest() => return Some(StopReason::AtRest),
         Some(Until::Rest { speed: Some(limit), .. }) if run.steps() > 1 && run.stepper().speed() < limit => {
             return Some(StopReason::BelowSpeed);

@@ -71,6 +71,12 @@ pub trait Physics<const D: usize>: Send + Sync + 'static {
     fn restore(&mut self, _simulation: &mut Simulation<D, Self::Scheme>, saved: &[f64]) -> bool {
         saved.is_empty()
     }
+    /// Let what comes at the time of the simulation come.
+    fn bring(&mut self, _simulation: &mut Simulation<D, Self::Scheme>) {}
+    /// The time at which something last came.
+    fn came(&self) -> f64 {
+        0.0
+    }
     /// Nothing that acts from outside, a source say, begins or changes after `time`.
     fn is_settled(&self, _time: f64) -> bool {
         true
@@ -251,7 +257,18 @@ impl<const D: usize, P: Physics<D>> Run for Simulated<D, P> {
             return false;
         }
         let still = self.simulation.at_rest() || self.simulation.rate() == 0.0;
-        still && self.physics.is_settled(self.simulation.time())
+        still && self.is_settled()
+    }
+    fn bring(&mut self) {
+        if !self.simulation.is_shown() {
+            self.physics.bring(&mut self.simulation);
+        }
+    }
+    fn is_settled(&self) -> bool {
+        self.physics.is_settled(self.simulation.time())
+    }
+    fn came(&self) -> f64 {
+        self.physics.came()
     }
 
     fn step(&mut self, until: f64) -> Result<f64, Failure> {

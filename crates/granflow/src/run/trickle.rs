@@ -18,5 +18,8 @@ pub(super) fn is_due(steps: u64) -> bool {
 /// Has nothing but a trickle moved for long enough? Asked after a look.
 pub(super) fn is_all(run: &dyn Run) -> bool {
     let Record { flowed, .. } = *run.record();
-    is_due(run.steps()) && flowed > 0.0 && run.time() >= 1.5 * flowed
+    let (time, came) = (run.time(), run.came());
+    // Counted from when the last of the mass came; where that never flowed, from the start.
+    let long = if flowed > came { time - came >= 1.5 * (flowed - came) } else { time >= 1.5 * came };
+    is_due(run.steps()) && flowed > 0.0 && long
 }

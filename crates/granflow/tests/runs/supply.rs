@@ -1,7 +1,9 @@
 //! Mass that comes in the course of a run: late and secondary releases, inflows by hydrographs.
 
 use granflow::Case;
-use granflow::run::Run;
+use granflow::case::Frames;
+use granflow::run::{Ends, Run, Until, drive};
+use granflow::sinks::Memory;
 use std::fmt::Write;
 use std::fs;
 use std::path::Path;
@@ -188,6 +190,86 @@ fn a_secondary_release_starts_when_it_is_hit_and_rest_does_not_wait_for_one_that
     let whole = before + run.stepper().poured();
     assert!((run.totals().volume / whole - 1.0).abs() < 1e-12);
     assert!(number(&*run, "unreleased_volume").unwrap() > 0.0, "nothing came by there");
+}
+
+/// Neither rest, nor a trickle, nor a low speed ends a run for which something is still to come.
+#[test]
+fn a_run_until_rest_waits_for_what_is_to_come() {
+    let folder = valley();
+    let again = "[[release]]\ncap = { height = 2.0, centre = [60.0, 60.0], radius = 20.0 }\nat = 100.0\n";
+    let pulse = "[[inflow]]\nline = [[60.0, 50.0], [60.0, 70.0]]\n\
+                 hydrograph = { time = [90.0, 91.0, 95.0], discharge = [0.0, 30.0, 0.0] }\n";
+    for (later, volume) in [(again, None), (pulse, Some(75.0))] {
+        for rest in [
+            Until::Rest { speed: None, trickle: None },
+            Until::Rest { speed: None, trickle: Some(0.01) },
+            Until::Rest { speed: Some(0.5), trickle: None },
+        ] {
+            let mut run = start(folder.path(), &format!("{FIRST}{later}"), "end = 900.0");
+            let ends = Ends { steps: None, time: Some(900.0), until: Some(rest), kinetic_energy: None };
+            let reason = drive(&mut *run, &ends, &mut []).unwrap();
+            let poured = run.stepper().poured();
+            assert!(run.time() > 95.0 && run.time() < 900.0, "{rest:?} ends at {} by {reason}", run.time());
+            assert!(
+                volume.is_none_or(|all| (poured / all - 1.0_f64).abs() < 1e-13) && poured > 1.0,
+                "{poured}"
+            );
+        }
+    }
+}
+
+#[test]
+fn what_comes_at_the_end_is_there_at_the_end() {
+    let folder = valley();
+    let inflow = "[[inflow]]\nline = [[60.0, 50.0], [60.0, 70.0]]\n\
+                  hydrograph = { time = [0.0, 10.0], discharge = [50.0, 50.0] }\n";
+    for end in [0.7, 5.0, 10.0, 11.0] {
+        let mut run = start(folder.path(), inflow, "end = 50.0");
+        let ends = Ends { steps: None, time: Some(end), until: None, kinetic_energy: None };
+        drive(&mut *run, &ends, &mut []).unwrap();
+        let (poured, exact) = (run.stepper().poured(), 50.0 * end.min(10.0));
+        assert!((poured / exact - 1.0).abs() < 1e-13, "{poured} instead of {exact}");
+    }
+    let mut run = start(folder.path(), &format!("{FIRST}at = 7.0\n"), "end = 50.0");
+    run.until(7.0).unwrap();
+    assert!(run.totals().volume > 1000.0);
+    let peak = run.peaks().into_iter().find(|(name, _)| *name == "peak_thickness").unwrap().1;
+    let largest = peak.into_iter().filter(|h| !h.is_nan()).fold(0.0, f64::max);
+    assert!((largest - 3.0).abs() < 0.1, "the release itself counts: {largest}");
+}
+
+/// Frames before a release do not show it, that at its time does.
+#[test]
+fn a_frame_shows_a_release_from_its_time_on() {
+    let folder = valley();
+    let mut run = start(folder.path(), &format!("{FIRST}at = 3.0\n"), "end = 50.0");
+    let mut memory = Memory::begin(&mut *run, Frames::Every(0.5), &["thickness"]);
+    let ends = Ends { steps: None, time: Some(4.0), until: None, kinetic_energy: None };
+    drive(&mut *run, &ends, &mut [&mut memory]).unwrap();
+    for entry in memory.finish(&mut *run).ledger {
+        assert_eq!(entry.mass > 0.0, entry.time >= 3.0, "at {}: {}", entry.time, entry.mass);
+    }
+}
+
+#[test]
+fn a_mass_enters_at_rest_where_there_is_no_way_down() {
+    let folder = tempfile::tempdir().unwrap();
+    write_grid(&folder.path().join("dem.asc"), [21, 21], |_, _| 100.0);
+    let inflow = "[[inflow]]\nline = [[52.0, 40.0], [52.0, 60.0]]\n\
+                  hydrograph = { time = [0.0, 10.0], discharge = [1.0, 1.0] }\n";
+    let mut run = start(folder.path(), inflow, "end = 400.0");
+    run.to_rest(400.0).unwrap();
+    assert!((run.totals().volume / 10.0 - 1.0).abs() < 1e-12, "{}", run.totals().volume);
+}
+
+#[test]
+fn a_comma_is_a_decimal_point_where_semicolons_part_the_numbers() {
+    let folder = valley();
+    fs::write(folder.path().join("q.csv"), "\u{feff}Zeit;Q\n0;1,5\n60;2,5\n").unwrap();
+    let inflow = "[[inflow]]\nline = [[60.0, 50.0], [60.0, 70.0]]\nhydrograph = \"q.csv\"\n";
+    let mut run = start(folder.path(), inflow, "end = 80.0");
+    run.until(61.0).unwrap();
+    assert!((run.stepper().poured() / 120.0 - 1.0).abs() < 1e-13, "{}", run.stepper().poured());
 }
 
 #[test]

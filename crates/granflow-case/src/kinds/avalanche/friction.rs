@@ -24,8 +24,8 @@ use crate::units::{Angle, RADIANS};
 pub struct Material {
     /// Name of the friction law, as the case file writes it.
     pub friction: &'static str,
-    /// Coefficient of the friction that grows with the load, mu = tan(delta).
-    pub mu: f64,
+    /// Coefficient of the friction that grows with the load, mu = tan(delta), in a law that has one.
+    pub mu: Option<f64>,
     /// The friction law; a parameter that differs from place to place has a number that stands in for it.
     pub law: AnyLaw,
     /// The parameters that differ from place to place.
@@ -117,8 +117,16 @@ impl Friction {
             }
             of_law.push(value.usual() / per);
         }
-        let mu = if self.has_mu() { first } else { 0.0 };
-        let (law, pressure_coefficient) = (self.law(&of_law), pressure.coefficient(mu));
+        let mu = self.has_mu().then_some(first);
+        if pressure == EarthPressure::Kaland && mu.is_none() {
+            let message = format!("`kaland` needs the friction angle of a law, and {} has none", self.name());
+            return Err(look.fault(
+                "material.earth_pressure",
+                message,
+                "write earth_pressure = \"isotropic\"",
+            ));
+        }
+        let (law, pressure_coefficient) = (self.law(&of_law), pressure.coefficient(mu.unwrap_or(0.0)));
         Ok(Material { friction: self.name(), mu, law, in_space, pressure_coefficient, gravity, density })
     }
 

@@ -86,6 +86,7 @@ fn terrain(file: &ResultFile, centres: [&[f64]; 2]) -> Result<Arc<dyn Domain>, S
     Ok(Arc::new(TerrainDomain {
         raster: Arc::new(Raster { crs: crs(file), ..raster(centres, file.whole("bed")?)? }),
         release: Arc::new(Sparse::of(file.first("thickness", 2)?)),
+        inlets: Arc::default(),
         density: f64::NAN,
         threshold: threshold(&file.text("threshold")),
         curvature: curvature(&file.text("curvature")),

@@ -31,8 +31,10 @@ pub struct TerrainDomain {
     /// The elevation. While a run computes, its grounds hold it and the raster has no values: see
     /// [`Domain::with_bed`].
     pub raster: Arc<Raster>,
-    /// Released thickness normal to the bed \[m\].
+    /// Released thickness normal to the bed, at the start or later \[m\].
     pub release: Arc<Sparse>,
+    /// The cells through which mass enters.
+    pub inlets: Arc<[usize]>,
     /// Density of the mass \[kg/m^3\]; NaN where a file does not tell it.
     pub density: f64,
     /// Thickness normal to the bed that a layer must exceed to count: outside that its maps have no value \[m\].
@@ -112,7 +114,8 @@ impl Domain for TerrainDomain {
     fn derive(&self, centres: [&[f64]; 2], maps: &mut Maps, summary: &mut Summary) {
         let Some((_, speed)) = maps.iter().find(|(name, _)| *name == "peak_speed") else { return };
         let pressure: Vec<f64> = speed.iter().map(|v| self.pressure(*v)).collect();
-        if let Some((length, drop)) = self.runout(centres, &pressure) {
+        let covered = maps.iter().find(|(name, _)| *name == "peak_thickness").map(|(_, map)| map.as_slice());
+        if let Some((length, drop)) = self.runout(centres, covered.unwrap_or(&[]), &pressure) {
             summary.runout = Some(length);
             summary.reach_angle = Some((drop / length).atan().to_degrees());
         }
@@ -161,13 +164,15 @@ impl TerrainDomain {
         if largest > 0.0 { self.drawn().min(0.5 * largest) } else { self.drawn() }
     }
 
-    /// Horizontal length, and drop, from the highest released cell to the farthest that the mass reached with a
-    /// peak pressure of [`REACHED_PRESSURE`].
+    /// Horizontal length, and drop, from the highest cell in which mass was released or entered to the farthest that it reached with a
+    /// peak pressure of [`REACHED_PRESSURE`]. A release that never started was never `covered` (by its peak thickness).
     #[cfg(feature = "files")]
-    fn runout(&self, [x, y]: [&[f64]; 2], pressure: &[f64]) -> Option<(f64, f64)> {
+    fn runout(&self, [x, y]: [&[f64]; 2], covered: &[f64], pressure: &[f64]) -> Option<(f64, f64)> {
         let bed = &self.raster.values;
         let columns = x.len();
         let released = self.release.iter().filter(|(_, thickness)| *thickness > 0.0).map(|(cell, _)| cell);
+        let released = released.chain(self.inlets.iter().copied());
+        let released = released.filter(|cell| covered.get(*cell).is_none_or(|peak| *peak > 0.0));
         let top = released.max_by(|&a, &b| bed[a].total_cmp(&bed[b]))?;
         let from = |k: usize| {
             let (dx, dy) = (x[k % columns] - x[top % columns], y[k / columns] - y[top / columns]);

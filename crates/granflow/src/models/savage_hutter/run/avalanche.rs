@@ -254,6 +254,7 @@ impl<'a> Avalanche<'a, 2, granflow_geo::terrain::Terrain> {
         let domain = TerrainDomain {
             raster: Arc::new(terrain.bed.with_values(Vec::new())),
             release: Arc::new(release),
+            inlets: Arc::default(),
             density: f64::NAN,
             threshold: self.threshold,
             curvature: terrain.curvature(),

@@ -42,7 +42,7 @@ pub(crate) fn part(run: &RunPlan, plan: &Plan, part: Part) -> Result<Box<dyn Run
 }
 
 fn on<const D: usize>(run: &RunPlan, plan: &Plan, part: Part) -> Result<Box<dyn Run>, StartError> {
-    let mu = plan.material.mu;
+    let mu = plan.material.mu.unwrap_or(0.0);
     let Method { name, film } = plan.scheme;
     let Some(law) = plan.material.law_in_loops() else {
         let law = plan.material.law;

@@ -46,10 +46,12 @@ pub(crate) fn terrain(run: &RunPlan, plan: &OnTerrain) -> Result<Vec<Line>, Star
     };
     let mut lines = case(run, material(&plan.material), &format!("{order}, film {:e}, ", plan.scheme.film));
     lines.push(threshold(run, " m"));
-    let loaded = terrain::load(run, plan)?;
+    let mut loaded = terrain::load(run, plan)?;
     lines.extend(mountain(&loaded, plan.material.gravity));
     let remarks: Vec<Line> = loaded.remarks.iter().map(|one| (one.kind(), one.text().to_owned())).collect();
     let reading = loaded.reading as f64;
+    // Mass and pull are those of all releases together.
+    loaded.start_all();
     let mut mountain = terrain::simulate(run, plan, loaded)?;
     let mut begun = Start::of(run, &mut *mountain, READ, PICTURES[1], |_| true)?;
     begun.size.reading = reading;
@@ -189,10 +191,13 @@ impl Mass {
 fn start(run: &RunPlan, start: &Start) -> Vec<Line> {
     let Start { volume, wet, pull, rate, size, watched } = start;
     let verdict = if *pull > 1.0 { "it will start" } else { "it rests" };
-    let mut lines = vec![
-        ("mass", format!("{volume:.6} in {wet} cells")),
-        ("pull", format!("at most {pull:.6} of what friction holds: {verdict}")),
-    ];
+    let mut lines = match wet {
+        0 => vec![("mass", "nothing lies there at the start".to_owned())],
+        wet => vec![
+            ("mass", format!("{volume:.6} in {wet} cells")),
+            ("pull", format!("at most {pull:.6} of what friction holds: {verdict}")),
+        ],
+    };
     lines.extend(watched.iter().cloned());
     lines.extend(effort(run, size, *rate));
     lines
@@ -229,15 +234,15 @@ fn threshold(run: &RunPlan, unit: &str) -> Line {
 
 fn material(material: &Material) -> Vec<Line> {
     let Material { friction, mu, in_space, pressure_coefficient, gravity, density, .. } = material;
-    let mu = match in_space.first() {
+    let first = match in_space.first() {
         Some(first) if first.index == 0 => {
             let name = first.key.rsplit('.').next().unwrap_or_default();
-            format!("{name} differs from place to place")
+            format!(", {name} differs from place to place")
         }
-        _ => format!("mu = {mu:.6} ({:.3} deg)", mu.atan().to_degrees()),
+        _ => mu.map(|mu| format!(", mu = {mu:.6} ({:.3} deg)", mu.atan().to_degrees())).unwrap_or_default(),
     };
     vec![
-        ("friction", format!("{friction}, {mu}")),
+        ("friction", format!("{friction}{first}")),
         ("material", format!("k = {pressure_coefficient:.6}, gravity {gravity}, density {density}")),
     ]
 }

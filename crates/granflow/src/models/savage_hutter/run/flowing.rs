@@ -85,7 +85,14 @@ where
         self.threshold
     }
     fn prepare(&mut self, simulation: &mut Simulation<D, S>, _until: f64) -> f64 {
-        if self.supply.is_empty() { f64::INFINITY } else { self.supply.bring(simulation) }
+        self.supply.bring(simulation);
+        self.supply.next(simulation)
+    }
+    fn bring(&mut self, simulation: &mut Simulation<D, S>) {
+        self.supply.bring(simulation);
+    }
+    fn came(&self) -> f64 {
+        self.supply.came
     }
     fn save(&self) -> Vec<f64> {
         self.supply.save()

@@ -43,13 +43,15 @@ impl InCells {
                 (least, largest) = (least.min(*value), largest.max(*value));
                 *value /= parameter.per;
             }
-            cells.ranges.push((parameter.key.clone(), [least, largest]));
+            if !matches!(parameter.place, Place::Everywhere(_)) {
+                cells.ranges.push((parameter.key.clone(), [least, largest]));
+            }
             cells.fields.push((parameter.index, values));
         }
         Ok(cells)
     }
 
-    /// Number `k` of the law in a cell.
+    /// Number `k` of the law in a cell. (The first one, with which others are compared, is as a case writes it.)
     fn number(&self, k: usize, cell: usize) -> f64 {
         self.fields
             .iter()
@@ -91,6 +93,12 @@ fn values(
         }
         Place::Everywhere(value) => return Ok(vec![*value; bed.values.len()]),
     };
+    if let Place::Raster(path, _) | Place::Polygons(path, _, _) = place
+        && values.iter().zip(&bed.values).all(|(value, level)| value.is_nan() || level.is_nan())
+    {
+        let text = format!("{}: it covers no cell of the terrain", path.display());
+        remarks.push(Remark::Warning(text));
+    }
     if let Some(elsewhere) = elsewhere {
         values.iter_mut().filter(|value| value.is_nan()).for_each(|value| *value = elsewhere);
     }

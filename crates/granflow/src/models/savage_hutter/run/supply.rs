@@ -31,19 +31,30 @@ pub(crate) struct Inflow {
     pub hydrograph: Hydrograph,
     /// The volume that has entered \[m^3\].
     pub entered: f64,
+    /// The time up to which it has; negative before the run.
+    pub until: f64,
 }
 
 /// All that comes in the course of a run.
-#[derive(Default)]
 pub(crate) struct Supply {
     pub late: Vec<Late>,
     pub inflows: Vec<Inflow>,
-    /// A layer of this thickness lets a secondary release start \[m\].
-    pub threshold: f64,
+    /// The time at which something last came.
+    pub came: f64,
+}
+
+impl Default for Supply {
+    /// Nothing comes.
+    fn default() -> Self {
+        Supply { late: Vec::new(), inflows: Vec::new(), came: 0.0 }
+    }
 }
 
 /// The share of a cell that entering mass may cross in a step.
 const CROSSED: f64 = 0.25;
+
+/// Flowing mass of this thickness lets a secondary release start \[m\].
+const HITS: f64 = 0.01;
 
 impl Supply {
     /// Nothing comes.
@@ -54,29 +65,40 @@ impl Supply {
     /// Nothing begins or goes on after `time`, but a secondary release that nothing reaches any more.
     pub fn is_settled(&self, time: f64) -> bool {
         let begun = |late: &Late| late.came || late.starts == Starts::Hit;
-        self.late.iter().all(begun) && self.inflows.iter().all(|inflow| inflow.hydrograph.end() <= time)
+        let ended = |inflow: &Inflow| inflow.hydrograph.end() <= time.min(inflow.until);
+        self.late.iter().all(begun) && self.inflows.iter().all(ended)
     }
 
-    /// Bring what has come up to the time of the simulation; the time up to which nothing else comes, or by which it must be asked
-    /// again.
-    pub fn bring<const D: usize, S>(&mut self, simulation: &mut Simulation<D, S>) -> f64
+    /// Bring what has come up to the time of the simulation.
+    pub fn bring<const D: usize, S>(&mut self, simulation: &mut Simulation<D, S>)
     where
         S: Scheme<D, f64, State = Flow<D, f64>>,
         S::Ground: Bed<D, f64>,
     {
         let time = simulation.time();
+        let before = simulation.poured();
         self.release(simulation, time);
-        let mut next = f64::INFINITY;
-        for late in self.late.iter().filter(|late| !late.came) {
-            if let Starts::At(at) = late.starts {
-                next = next.min(at);
-            }
-        }
         for inflow in &mut self.inflows {
             inflow.enter(simulation, time);
-            next = next.min(inflow.next(simulation, time));
         }
-        next
+        if simulation.poured() != before {
+            self.came = time;
+        }
+    }
+
+    /// The time up to which nothing else comes, or by which it must be asked again.
+    pub fn next<const D: usize, S>(&self, simulation: &Simulation<D, S>) -> f64
+    where
+        S: Scheme<D, f64, State = Flow<D, f64>>,
+        S::Ground: Bed<D, f64>,
+    {
+        let time = simulation.time();
+        let late = self.late.iter().filter(|late| !late.came).filter_map(|late| match late.starts {
+            Starts::At(at) => Some(at),
+            Starts::Hit => None,
+        });
+        let inflows = self.inflows.iter().map(|inflow| inflow.next(simulation, time));
+        late.chain(inflows).fold(f64::INFINITY, f64::min)
     }
 
     /// The releases that start now; where several cover a cell their order does not matter.
@@ -85,10 +107,9 @@ impl Supply {
         S: Scheme<D, f64, State = Flow<D, f64>>,
         S::Ground: Bed<D, f64>,
     {
-        let threshold = self.threshold;
         let reached = |cell: &[usize; 2]| {
             let here = simulation.cell(index(*cell));
-            !here.state.is_still() && here.ground.thickness(here.state.h) > threshold
+            !here.state.is_still() && here.ground.thickness(here.state.h) > HITS
         };
         let starts = |late: &&mut Late| {
             !late.came
@@ -112,29 +133,37 @@ impl Supply {
                 (index(cell), Flow { h: old.h + volumes.iter().sum::<f64>(), ..old })
             })
             .collect();
-        if !states.is_empty() {
-            simulation.change(states);
-        }
+        give(simulation, states);
     }
 
     /// What a checkpoint must keep.
     pub fn save(&self) -> Vec<f64> {
+        if self.is_empty() {
+            return Vec::new();
+        }
         let came = self.late.iter().map(|late| f64::from(u8::from(late.came)));
-        came.chain(self.inflows.iter().map(|inflow| inflow.entered)).collect()
+        let entered = self.inflows.iter().flat_map(|inflow| [inflow.entered, inflow.until]);
+        std::iter::once(self.came).chain(came).chain(entered).collect()
     }
 
     /// Take it up again; false where it does not fit.
     pub fn restore(&mut self, saved: &[f64]) -> bool {
-        if saved.len() != self.late.len() + self.inflows.len() {
+        if self.is_empty() {
+            return saved.is_empty();
+        }
+        if saved.len() != 1 + self.late.len() + 2 * self.inflows.len() {
             return false;
         }
-        let (came, entered) = saved.split_at(self.late.len());
+        self.came = saved[0];
+        let (came, entered) = saved[1..].split_at(self.late.len());
         self.late.iter_mut().zip(came).for_each(|(late, came)| late.came = *came != 0.0);
-        self.inflows.iter_mut().zip(entered).for_each(|(inflow, entered)| inflow.entered = *entered);
+        for (inflow, entered) in self.inflows.iter_mut().zip(entered.chunks_exact(2)) {
+            (inflow.entered, inflow.until) = (entered[0], entered[1]);
+        }
         true
     }
 
-    /// Volume per cell area of the secondary releases that nothing has reached \[m\].
+    /// Volume per cell area of the releases that have not started \[m\].
     pub fn unreleased(&self) -> f64 {
         let waiting = self.late.iter().filter(|late| !late.came);
         waiting.flat_map(|late| &late.cells).map(|(_, volume)| volume).sum()
@@ -149,11 +178,15 @@ impl Inflow {
         S: Scheme<D, f64, State = Flow<D, f64>>,
         S::Ground: Bed<D, f64>,
     {
+        if time <= self.until {
+            return;
+        }
         let due = self.hydrograph.volume(time) - self.entered;
+        let speed = self.hydrograph.mean_speed(self.until.max(0.0), time);
+        self.until = time;
         if due <= 0.0 {
             return;
         }
-        let speed = self.hydrograph.speed_at(time);
         let measure = simulation.grid().measure();
         let states: Vec<_> = self
             .inlets
@@ -162,13 +195,13 @@ impl Inflow {
                 let here = simulation.cell(index(inlet.cell));
                 let (old, h) = (here.state, due * inlet.share / measure);
                 let along: [f64; D] = std::array::from_fn(|k| inlet.direction[k]);
-                let horizontal = speed / here.ground.square(along).sqrt();
+                let horizontal = if speed > 0.0 { speed / here.ground.square(along).sqrt() } else { 0.0 };
                 let q = std::array::from_fn(|k| old.q[k] + h * horizontal * along[k]);
                 (index(inlet.cell), Flow { h: old.h + h, q })
             })
             .collect();
         let before = simulation.poured();
-        simulation.change(states);
+        give(simulation, states);
         self.entered += simulation.poured() - before;
     }
 
@@ -179,24 +212,54 @@ impl Inflow {
         S::Ground: Bed<D, f64>,
     {
         let Hydrograph { time: instants, discharge, speed } = &self.hydrograph;
-        let Some(change) = instants.iter().copied().find(|instant| *instant > time) else {
-            return f64::INFINITY;
-        };
-        if time < instants[0] {
-            return change;
+        let Some(next) = instants.iter().position(|instant| *instant > time) else { return f64::INFINITY };
+        if next == 0 {
+            return instants[0];
         }
-        let largest = |values: &[f64]| values.iter().copied().fold(0.0, f64::max);
+        let most = |values: &[f64]| values.get(next - 1..=next).map_or(0.0, |two| two[0].max(two[1]));
         let grid = simulation.grid();
         let size = grid.size.into_iter().fold(f64::INFINITY, f64::min);
         let step = |inlet: &Inlet| {
-            let rises = largest(discharge) * inlet.share / grid.measure();
+            let rises = most(discharge) * inlet.share / grid.measure();
             let pull = simulation.ground(index(inlet.cell)).gravity();
             // The cell's own wave sqrt(2 g h) of what comes in the step, and its speed.
             let by_wave = (CROSSED * size / (2.0 * pull * rises).sqrt()).powf(2.0 / 3.0);
-            by_wave.min(CROSSED * size / largest(speed))
+            by_wave.min(CROSSED * size / most(speed))
         };
-        let most = self.inlets.iter().map(step).fold(f64::INFINITY, f64::min);
-        change.min(time + most)
+        let longest = self.inlets.iter().map(step).fold(f64::INFINITY, f64::min);
+        instants[next].min(time + longest)
+    }
+}
+
+/// Give cells these states, and count them in the maps of peaks and arrivals.
+fn give<const D: usize, S>(simulation: &mut Simulation<D, S>, states: Vec<([usize; D], Flow<D, f64>)>)
+where
+    S: Scheme<D, f64, State = Flow<D, f64>>,
+    S::Ground: Bed<D, f64>,
+{
+    if states.is_empty() {
+        return;
+    }
+    let cells: Vec<[usize; D]> = states.iter().map(|(cell, _)| *cell).collect();
+    simulation.change(states);
+    let (time, threshold) = (simulation.time(), simulation.maps().map(|maps| maps.threshold()));
+    let Some(threshold) = threshold else { return };
+    let counted: Vec<_> = cells
+        .iter()
+        .map(|cell| (simulation.place(*cell), simulation.diagnostics(*cell)))
+        .filter(|(_, watch)| watch.thickness > threshold)
+        .collect();
+    for (name, map) in simulation.maps_mut() {
+        for (place, watch) in &counted {
+            let value = match name {
+                "peak_thickness" => watch.thickness as f32,
+                "peak_speed" => watch.speed_squared.sqrt() as f32,
+                "arrival_time" if map[*place].is_nan() => time as f32,
+                _ => continue,
+            };
+            // `max` takes the number of the two.
+            map[*place] = map[*place].max(value);
+        }
     }
 }
 

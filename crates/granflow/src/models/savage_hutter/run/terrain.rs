@@ -49,6 +49,17 @@ pub(super) struct Loaded {
     pub reading: usize,
 }
 
+impl Loaded {
+    /// Let every release start with the run, so that one look shows all of them.
+    pub(super) fn start_all(&mut self) {
+        let columns = self.terrain.bed.columns;
+        for late in std::mem::take(&mut self.supply.late) {
+            let cells = late.cells.iter().map(|([column, row], volume)| (row * columns + column, *volume));
+            self.release = std::mem::take(&mut self.release).plus(cells.collect());
+        }
+    }
+}
+
 /// The run on a mountain that was read. The derivatives of the bed are fitted cell by cell as the simulation asks for its
 /// grounds.
 pub(super) fn simulate(
@@ -64,11 +75,16 @@ pub(super) fn simulate(
         size: [bed.cell; 2],
         boundary: [[Boundary::Absorbing; 2]; 2],
     };
-    let thickness = release.map(|cell, volume| volume * terrain.fit(bed.place(cell)).cosine());
+    let number = |[column, row]: [usize; 2]| row * columns + column;
+    let cells = |late: &Late| late.cells.iter().map(|(cell, volume)| (number(*cell), *volume)).collect();
+    let all = supply.late.iter().fold(release.clone(), |all, late| all.plus(cells(late)));
+    let thickness = all.map(|cell, volume| volume * terrain.fit(bed.place(cell)).cosine());
+    let inlets = supply.inflows.iter().flat_map(|inflow| &inflow.inlets).map(|inlet| number(inlet.cell));
     // The grounds hold the elevation from here on.
     let domain = TerrainDomain {
         raster: Arc::new(bed.with_values(Vec::new())),
         release: Arc::new(thickness),
+        inlets: inlets.collect(),
         density: plan.material.density,
         threshold: run.output.threshold,
         curvature: curvature_of(plan),
@@ -173,7 +189,7 @@ pub(super) fn load(run: &RunPlan, plan: &Plan) -> Result<Loaded, StartError> {
     let parameters = InCells::read(run, &plan.material, (&bed, crs.as_ref()), &mut remarks)?;
     let terrain = curved(run, plan, bed)?;
     let (release, parts) = (Sparse::default(), Vec::new());
-    let supply = Supply { threshold: run.output.threshold, ..Supply::default() };
+    let supply = Supply::default();
     let mut loaded = Loaded { terrain, release, parts, remarks, survey, parameters, supply, reading };
     for one in &plan.releases {
         add(&mut loaded, one, crs.as_ref())?;
@@ -355,7 +371,7 @@ fn inflow(
     let inlets = cells.into_iter().map(inlet).collect::<Result<_, StartError>>()?;
     let volume = one.hydrograph.volume(f64::INFINITY);
     loaded.parts.push(("inflow".to_owned(), None, volume));
-    Ok(Inflow { inlets, hydrograph: one.hydrograph.clone(), entered: 0.0 })
+    Ok(Inflow { inlets, hydrograph: one.hydrograph.clone(), entered: 0.0, until: -1.0 })
 }
 
 /// A gentler slope has no direction.
