@@ -29,8 +29,7 @@ pub(crate) fn read(files: &dyn FileAccess, path: &Path, [nx, ny]: [usize; 2]) ->
 pub(crate) fn read_text(bytes: &[u8]) -> Result<(Vec<usize>, Vec<f64>), String> {
     let text = std::str::from_utf8(bytes).map_err(|_| "it is not text".to_owned())?;
     let text = text.trim_start_matches('\u{feff}');
-    // Where something else parts the numbers, a comma is a decimal point.
-    let text = if text.contains([';', '\t']) { text.replace(',', ".") } else { text.to_owned() };
+    let text = if has_decimal_commas(text) { text.replace(',', ".") } else { text.to_owned() };
     let mut values = Vec::new();
     let (mut rows, mut columns) = (0, None);
     for (number, line) in text.lines().enumerate() {
@@ -57,6 +56,17 @@ pub(crate) fn read_text(bytes: &[u8]) -> Result<(Vec<usize>, Vec<f64>), String> 
     Ok((vec![rows, columns.unwrap_or(0)], values))
 }
 
+/// Is a comma a decimal point here? Where something else parts the numbers: a semicolon, a tab, or blanks, no comma having one beside it.
+fn has_decimal_commas(text: &str) -> bool {
+    if text.contains([';', '\t']) {
+        return true;
+    }
+    let lines = || text.lines().map(|line| line.split('#').next().unwrap_or("").trim());
+    let parted = |line: &str| line.split_whitespace().count() > 1;
+    let free = |line: &str| !line.contains(", ") && !line.contains(" ,");
+    lines().any(|line| line.contains(',') && parted(line)) && lines().all(free)
+}
+
 #[cfg(test)]
 mod tests {
     use super::super::files::Outline;
@@ -76,6 +86,15 @@ mod tests {
 
     fn csv(text: &str, cells: [usize; 2]) -> Result<Vec<f64>, String> {
         read(&One(text.as_bytes()), Path::new("h.csv"), cells)
+    }
+
+    #[test]
+    fn a_comma_is_a_decimal_point_where_something_else_parts_the_numbers() {
+        for text in ["1,5;2,5\n3;4\n", "1,5\t2,5\n3\t4\n", "1,5 2,5\n3 4\n", "\u{feff}1,5;2,5\n3;4\n"] {
+            assert_eq!(csv(text, [2, 2]), Ok(vec![1.5, 2.5, 3.0, 4.0]), "{text}");
+        }
+        assert_eq!(csv("1,5\n2,5\n", [2, 2]), Ok(vec![1.0, 5.0, 2.0, 5.0]));
+        assert_eq!(csv("1, 5\n2, 5\n", [2, 2]), Ok(vec![1.0, 5.0, 2.0, 5.0]));
     }
 
     #[test]

@@ -105,6 +105,9 @@ enum Command {
         /// The benchmarks (default: all)
         #[arg(value_name = "BENCHMARK")]
         benchmarks: Vec<String>,
+        /// One of them; may be given again
+        #[arg(long, value_name = "NAME")]
+        only: Vec<String>,
         /// Where the results go
         #[arg(long, value_name = "DIR", default_value = "verify")]
         out: PathBuf,
@@ -161,7 +164,10 @@ fn act(command: Command) -> Result<(), Failure> {
         }
         Command::New { kind: Some(kind), file, .. } => new::new(&kind, file),
         Command::Reproduce { paper, out } => reproduce::reproduce(paper.as_deref(), &out),
-        Command::Verify { benchmarks, out, quick } => verify::verify(&benchmarks, &out, quick),
+        Command::Verify { mut benchmarks, only, out, quick } => {
+            benchmarks.extend(only);
+            verify::verify(&benchmarks, &out, quick)
+        }
         Command::Plot { results, out } => plot::plot(&results, out.as_deref()),
         Command::Compare(options) => compare::compare(&options),
         Command::Bench(options) => bench::bench(&options),

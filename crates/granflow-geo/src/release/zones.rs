@@ -2,7 +2,7 @@
 
 use super::{Layer, ReleaseError, attribute, coverage, same_system, sound};
 use crate::raster::Raster;
-use geo::{Polygon, unary_union};
+use geo::{BoundingRect, MultiPolygon, Polygon, unary_union};
 use std::collections::BTreeMap;
 
 impl Layer {
@@ -34,6 +34,13 @@ impl Layer {
         }
         for (cell, share) in covered(&all, template) {
             bare[cell] -= share;
+        }
+        if largest.iter().all(|share| *share == 0.0) {
+            let Some(extent) = MultiPolygon::new(all).bounding_rect() else {
+                return Err(ReleaseError::Nothing { path: path.into(), problem: "it holds no polygon" });
+            };
+            let (low, high) = (extent.min(), extent.max());
+            return Err(ReleaseError::outside(path, [low.x, low.y, high.x, high.y], template, 1.0));
         }
         for (value, _) in
             values.iter_mut().zip(largest.iter().zip(&bare)).filter(|(_, (share, bare))| share < bare)

@@ -17,6 +17,8 @@ pub struct Input {
     pub crc: u32,
 }
 
+/// Endings that a name gets: what GDAL writes of a raster's values, and its mask.
+const BEHIND: [&str; 2] = [".aux.xml", ".msk"];
 /// Endings of the files that are read with another of the same name: projection, attributes, index, code page, place.
 const BESIDE: [&str; 10] = ["prj", "PRJ", "dbf", "DBF", "shx", "SHX", "cpg", "CPG", "tfw", "TFW"];
 
@@ -26,7 +28,15 @@ const BESIDE: [&str; 10] = ["prj", "PRJ", "dbf", "DBF", "shx", "SHX", "cpg", "CP
 /// [`Error::Io`] naming the file that cannot be read.
 pub fn inputs(paths: &[PathBuf], name: impl Fn(&Path) -> PathBuf) -> Result<Vec<Input>, Error> {
     let beside = |path: &PathBuf| BESIDE.map(|ending| path.with_extension(ending));
-    let mut all: Vec<PathBuf> = paths.iter().flat_map(beside).filter(|path| path.is_file()).collect();
+    let behind = |path: &PathBuf| {
+        BEHIND.map(|ending| {
+            let mut name = path.clone().into_os_string();
+            name.push(ending);
+            PathBuf::from(name)
+        })
+    };
+    let others = paths.iter().flat_map(beside).chain(paths.iter().flat_map(behind));
+    let mut all: Vec<PathBuf> = others.filter(|path| path.is_file()).collect();
     all.extend_from_slice(paths);
     all.sort();
     all.dedup();
@@ -90,6 +100,12 @@ mod tests {
         let without = now();
         fs::write(folder.path().join("area.prj"), "").unwrap();
         assert_eq!(difference(&without, &now()).unwrap(), "area.prj was not there when the run began");
+        let without = now();
+        fs::write(folder.path().join("area.shp.aux.xml"), "").unwrap();
+        assert_eq!(
+            difference(&without, &now()).unwrap(),
+            "area.shp.aux.xml was not there when the run began"
+        );
         assert!(
             inputs(&[folder.path().join("none")], Path::to_owned).unwrap_err().to_string().contains("none")
         );

@@ -40,8 +40,10 @@ impl Nodes {
 
     /// The cell that a place lies in, one of two where it is on their face; the grid's outer edge belongs to it.
     pub fn cell(&self, place: &[f64]) -> Option<usize> {
+        /// The ends follow from the centres of the cells, to rounding.
+        const ROUNDING: f64 = 1e-9;
         let at = self.counted(place);
-        let within = (0..2).all(|k| (0.0..=self.count[k] as f64).contains(&at[k]));
+        let within = (0..2).all(|k| (-ROUNDING..=self.count[k] as f64 + ROUNDING).contains(&at[k]));
         let [i, j] = [0, 1].map(|k| (at[k] as usize).min(self.count[k] - 1));
         within.then_some(j * self.count[0] + i)
     }

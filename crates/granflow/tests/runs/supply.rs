@@ -273,6 +273,26 @@ fn a_comma_is_a_decimal_point_where_semicolons_part_the_numbers() {
 }
 
 #[test]
+fn columns_are_taken_by_their_names() {
+    let folder = valley();
+    let inflow = "[[inflow]]\nline = [[60.0, 50.0], [60.0, 70.0]]\nhydrograph = \"q.csv\"\n";
+    fs::write(folder.path().join("q.csv"), "speed [m/s],time [s],Q (m3/s)\n1,0,5\n1,20,5\n").unwrap();
+    let mut run = start(folder.path(), inflow, "end = 80.0");
+    run.until(21.0).unwrap();
+    assert!((run.stepper().poured() / 100.0 - 1.0).abs() < 1e-13, "{}", run.stepper().poured());
+    for (text, said) in [
+        ("time [min],discharge\n0,5\n20,5\n", "`min`"),
+        ("time,depth\n0,5\n20,5\n", "`depth`"),
+        ("time,speed\n0,5\n20,5\n", "no column `discharge`"),
+        ("time,discharge,speed\n0,5\n20,5\n", "names 3 columns and has 2"),
+    ] {
+        fs::write(folder.path().join("q.csv"), text).unwrap();
+        let error = try_start(folder.path(), inflow, "end = 9.0").err().unwrap();
+        assert!(error.contains(said), "{text}: {error}");
+    }
+}
+
+#[test]
 fn the_order_of_the_releases_changes_no_bit() {
     let folder = valley();
     let cap = |height: f64, x: f64, when: &str| {

@@ -136,27 +136,68 @@ impl Words {
     }
 }
 
-/// A hydrograph from a text file; a first line of words is left out.
+/// What the columns of a hydrograph may be called, in the order that they have without names, and their units.
+const COLUMNS: [(&[&str], &[&str]); 3] = [
+    (&["time", "t", "zeit"], &["", "s", "sec", "seconds"]),
+    (&["discharge", "q", "abfluss"], &["", "m3/s", "m^3/s", "m³/s"]),
+    (&["speed", "velocity", "v", "geschwindigkeit"], &["", "m/s"]),
+];
+
+/// A hydrograph from a text file: its columns by the names in the first line, or without names in the order time, discharge, speed.
 fn read(look: &Look, path: &Path) -> Result<Hydrograph, String> {
     let name = path.display();
     let bytes = look.files.bytes(path).map_err(|error| format!("cannot read {name}: {error}"))?;
     let text = std::str::from_utf8(&bytes).map_err(|_| format!("{name} is not text"))?;
-    let words = |line: &str| {
-        line.trim_start_matches([' ', '\u{feff}'])
-            .starts_with(|sign: char| sign.is_alphabetic() || sign == '"')
-    };
+    let text = text.trim_start_matches('\u{feff}');
+    let header = text
+        .lines()
+        .next()
+        .filter(|line| line.trim_start().starts_with(|sign: char| sign.is_alphabetic() || sign == '"'));
     // The header stays as an empty line, so that the lines keep their numbers.
-    let start =
-        if text.lines().next().is_some_and(words) { text.find('\n').unwrap_or(text.len()) } else { 0 };
+    let start = header.map_or(0, str::len);
     let (shape, values) =
         array::read_text(&text.as_bytes()[start..]).map_err(|error| format!("cannot use {name}: {error}"))?;
     let columns = shape[1];
     if !(2..=3).contains(&columns) {
         return Err(format!("{name} has {columns} columns, expected time, discharge and perhaps speed"));
     }
-    let column = |k: usize| values.chunks_exact(columns).map(|row| row[k]).collect();
-    let speed = if columns == 3 { column(2) } else { Vec::new() };
-    Ok(Hydrograph { time: column(0), discharge: column(1), speed })
+    let order = match header {
+        None => (0..columns).collect(),
+        Some(header) => named(header).map_err(|problem| format!("{name}: {problem}"))?,
+    };
+    if order.len() != columns {
+        return Err(format!("{name} names {} columns and has {columns}", order.len()));
+    }
+    let column = |which: usize| match order.iter().position(|of| *of == which) {
+        Some(k) => values.chunks_exact(columns).map(|row| row[k]).collect(),
+        None => Vec::new(),
+    };
+    Ok(Hydrograph { time: column(0), discharge: column(1), speed: column(2) })
+}
+
+/// Which of [`COLUMNS`] each name of a header is.
+fn named(header: &str) -> Result<Vec<usize>, String> {
+    let mut order = Vec::new();
+    for word in header.split([',', ';', '\t']) {
+        let word = word.trim().trim_matches('"').to_lowercase();
+        let (name, unit) = word.split_once(['[', '(']).unwrap_or((&word, ""));
+        let (name, unit) = (name.trim(), unit.trim_end_matches([']', ')']).trim());
+        let Some(which) = COLUMNS.iter().position(|(names, _)| names.contains(&name)) else {
+            return Err(format!("its column `{word}` is none of time, discharge, speed"));
+        };
+        if !COLUMNS[which].1.contains(&unit) {
+            let (names, units) = COLUMNS[which];
+            return Err(format!("its column `{name}` is in `{unit}`; {} is in {}", names[0], units[1]));
+        }
+        if order.contains(&which) {
+            return Err(format!("its column `{name}` is there twice"));
+        }
+        order.push(which);
+    }
+    match [0, 1].iter().find(|which| !order.contains(which)) {
+        Some(which) => Err(format!("it has no column `{}`", COLUMNS[*which].0[0])),
+        None => Ok(order),
+    }
 }
 
 impl Hydrograph {

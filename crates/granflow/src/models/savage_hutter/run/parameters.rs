@@ -29,7 +29,7 @@ impl InCells {
         let usual = Parameters::of(&material.law);
         let mut cells = InCells { usual, fields: Vec::new(), ranges: Vec::new() };
         for parameter in &material.in_space {
-            let mut values = values(&parameter.place, (bed, crs), remarks)?;
+            let mut values = values(run, parameter, (bed, crs), remarks)?;
             let (mut least, mut largest) = (f64::INFINITY, f64::NEG_INFINITY);
             for (cell, (value, level)) in values.iter_mut().zip(&bed.values).enumerate() {
                 if level.is_nan() {
@@ -68,7 +68,8 @@ impl InCells {
 
 /// The values of a parameter on the cells of a bed.
 fn values(
-    place: &Place,
+    run: &RunPlan,
+    InSpace { key, place, .. }: &InSpace,
     (bed, crs): (&Raster, Option<&Crs>),
     remarks: &mut Vec<Remark>,
 ) -> Result<Vec<f64>, StartError> {
@@ -81,7 +82,17 @@ fn values(
                 let cell = raster.cell_at([bed.x(k % bed.columns), bed.y(k / bed.columns)]);
                 cell.map_or(f64::NAN, |cell| raster.values[cell])
             };
-            ((0..bed.values.len()).map(at).collect(), *elsewhere)
+            let values: Vec<f64> = (0..bed.values.len()).map(at).collect();
+            if values.iter().all(|value| value.is_nan()) {
+                let (x, y) = ([raster.west, raster.east()], [raster.south, raster.north()]);
+                let message = format!("{}: it has no value for any cell of the terrain", path.display());
+                let cure = format!(
+                    "it lies at x {} to {}, y {} to {}: give one of the same place",
+                    x[0], x[1], y[0], y[1]
+                );
+                return Err(run.fault(key, message, &cure).into());
+            }
+            (values, *elsewhere)
         }
         Place::Polygons(path, attribute, elsewhere) => {
             let layer = Layer::read(path)?;
@@ -93,12 +104,6 @@ fn values(
         }
         Place::Everywhere(value) => return Ok(vec![*value; bed.values.len()]),
     };
-    if let Place::Raster(path, _) | Place::Polygons(path, _, _) = place
-        && values.iter().zip(&bed.values).all(|(value, level)| value.is_nan() || level.is_nan())
-    {
-        let text = format!("{}: it covers no cell of the terrain", path.display());
-        remarks.push(Remark::Warning(text));
-    }
     if let Some(elsewhere) = elsewhere {
         values.iter_mut().filter(|value| value.is_nan()).for_each(|value| *value = elsewhere);
     }

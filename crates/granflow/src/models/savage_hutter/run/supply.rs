@@ -222,9 +222,12 @@ impl Inflow {
         let step = |inlet: &Inlet| {
             let rises = most(discharge) * inlet.share / grid.measure();
             let pull = simulation.ground(index(inlet.cell)).gravity();
-            // The cell's own wave sqrt(2 g h) of what comes in the step, and its speed.
+            // The cell's own wave sqrt(2 g h) of what comes in the step, and its speed; on a dry bed the front must not be late.
             let by_wave = (CROSSED * size / (2.0 * pull * rises).sqrt()).powf(2.0 / 3.0);
-            by_wave.min(CROSSED * size / most(speed))
+            let here = simulation.cell(index(inlet.cell));
+            let dry = here.ground.thickness(here.state.h) < HITS;
+            let by_front = if dry { CROSSED * HITS / rises } else { f64::INFINITY };
+            by_wave.min(CROSSED * size / most(speed)).min(by_front)
         };
         let longest = self.inlets.iter().map(step).fold(f64::INFINITY, f64::min);
         instants[next].min(time + longest)
