@@ -7,7 +7,7 @@ use granflow::Case;
 use granflow::session::RunError;
 
 use crate::failure::{Failure, print};
-use crate::run::{RunOptions, compute};
+use crate::run::{RESUME, RunOptions, compute};
 use crate::{mountain, new};
 
 /// Writes the built-in mountain, its release and its case into `out`, and computes them there.
@@ -22,7 +22,15 @@ pub fn demo(out: &Path) -> Result<(), Failure> {
         fs::write(&path, text).map_err(|error| Failure::file("write", &path, &error))?;
     }
     let case = Case::read(&file)?.check()?;
-    let finished = compute(case, &RunOptions { out: Some(out.to_owned()), ..RunOptions::default() })?;
+    let finished = compute(case, &RunOptions { out: Some(out.to_owned()), ..RunOptions::default() })
+        .map_err(|failure| match failure {
+            Failure::Interrupted(said) => {
+                let again =
+                    format!("granflow run {} --out {} --resume goes on", file.display(), out.display());
+                Failure::Interrupted(said.replace(RESUME, &again))
+            }
+            other => other,
+        })?;
     let summary = finished.close().map_err(RunError::from)?;
     let number = |value: Option<f64>| value.map_or_else(|| "-".to_owned(), |value| format!("{value:.1}"));
     let place = |name: &str| out.join(name).display().to_string();

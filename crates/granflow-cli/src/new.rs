@@ -79,6 +79,8 @@ pub fn new(kind: &str, file: Option<PathBuf>) -> Result<(), Failure> {
         files.push((file.with_file_name("mountain.asc"), mountain::elevation()));
         files.push((file.with_file_name("release.geojson"), mountain::release()));
     }
+    // The same mountain serves any number of cases.
+    files.retain(|(path, text)| *path == file || std::fs::read_to_string(path).ok().as_ref() != Some(text));
     if let Some((path, _)) = files.iter().find(|(path, _)| path.exists()) {
         return Err(exists(path));
     }
@@ -90,7 +92,10 @@ pub fn new(kind: &str, file: Option<PathBuf>) -> Result<(), Failure> {
 }
 
 fn exists(path: &Path) -> Failure {
-    Failure::File(format!("{} exists and is not overwritten; give another name", path.display()))
+    Failure::File(format!(
+        "{} exists and is not overwritten; give another name, or one in another folder",
+        path.display()
+    ))
 }
 
 fn write_new(path: &Path, text: &str) -> Result<(), Failure> {

@@ -105,6 +105,9 @@ fn command() -> String {
     std::env::args_os().map(|word| word.to_string_lossy().into_owned()).collect::<Vec<_>>().join(" ")
 }
 
+/// How an interrupted run goes on.
+pub const RESUME: &str = "the same command with --resume goes on";
+
 /// A run that was interrupted is a failure, and much in films a warning.
 fn judged(finished: Finished) -> Result<Finished, Failure> {
     let summary = &finished.summary;
@@ -112,7 +115,7 @@ fn judged(finished: Finished) -> Result<Finished, Failure> {
         tell(&format!("warning: {warning}\n"));
     }
     if summary.stop_reason == StopReason::Interrupted {
-        return Err(Failure::Interrupted(format!("{}; --resume goes on", line(&finished))));
+        return Err(Failure::Interrupted(format!("{}; {RESUME}", line(&finished))));
     }
     Ok(finished)
 }

@@ -11,7 +11,7 @@ use crate::fault::CaseError;
 pub(super) fn split(name: &str, argument: &str) -> Result<(Vec<String>, String), CaseError> {
     let wrong = |message: &str| {
         CaseError::new(name, argument, None, "", message.to_owned())
-            .help("write --set key.path=value, for instance --set scheme.courant=0.5 or --set 'material.slope=20 deg'")
+            .help("write --set key.path=value, for instance --set title=trial or --set 'material.friction={coulomb={mu=0.3}}'")
     };
     let (key, value) = argument.split_once('=').ok_or_else(|| wrong("there is no `=`"))?;
     let (key, value) = (key.trim(), value.trim());
