@@ -186,6 +186,10 @@ impl Written for Words {
         let sides = grid.boundary.check(look, &cells)?;
         let (material, columns) = material.check(look, &cells.x)?;
         let stepping = scheme.check(look)?;
+        if material.by_volume {
+            let message = "`size = \"auto\"` needs the cubic metres of a [terrain]";
+            return Err(look.fault("material.friction.samosat.size", message, "on a [grid] name the size"));
+        }
         if let Some(InSpace { key, .. }) = material.in_space.first() {
             let message = "a parameter that differs from place to place needs a [terrain]";
             return Err(look.fault(key, message, "on a [grid] give one number"));

@@ -196,3 +196,19 @@ fn what_is_wrong_with_a_field_is_named_with_its_place_and_a_cure() {
         }
     }
 }
+
+#[test]
+fn the_size_of_an_avalanche_chooses_mu() {
+    let folder = folder();
+    let folder = folder.path();
+    let second = "name = \"energy_stable_2\"";
+    // 4241 m3 lie under the cap.
+    let auto = end(folder, "samosat = { size = \"auto\" }", second);
+    assert!(auto == end(folder, "samosat = { mu = 0.22 }", second));
+    assert!(auto == end(folder, "samosat = { size = \"small\" }", second));
+    assert!(end(folder, "samosat = {}", second) == end(folder, "samosat = { size = \"large\" }", second));
+    let run = start(folder, "samosat = { size = \"auto\" }", second).unwrap();
+    assert!(run.numbers().iter().any(|(name, mu)| name == "friction_mu" && *mu == 0.22));
+    let both = start(folder, "samosat = { size = \"small\", mu = 0.2 }", second).err().unwrap();
+    assert!(both.contains("both `mu` and `size`"), "{both}");
+}

@@ -2,7 +2,7 @@
 
 use std::f64::consts::FRAC_PI_2;
 
-use granflow_model::savage_hutter::friction::{AnyLaw, Law};
+use granflow_model::savage_hutter::friction::{AnyLaw, Law, SamosAt};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -11,6 +11,7 @@ mod parameter;
 
 use parameter::{Number, Parameter};
 
+pub use laws::AvalancheSize;
 pub(crate) use laws::Friction;
 pub use parameter::{ByElevation, InSpace, Place, Range};
 
@@ -30,6 +31,8 @@ pub struct Material {
     pub law: AnyLaw,
     /// The parameters that differ from place to place.
     pub in_space: Vec<InSpace>,
+    /// mu is that of the released volume ([`AvalancheSize::of`]).
+    pub by_volume: bool,
     /// The earth-pressure coefficient k.
     pub pressure_coefficient: f64,
     /// Gravity g: m/s^2 on terrain, 1 where times are scaled by sqrt(L/g).
@@ -50,6 +53,15 @@ pub(crate) enum EarthPressure {
 }
 
 impl Material {
+    /// The same for a released volume \[m^3\], in which mu may have been that of the volume; and the size, if it was.
+    #[must_use]
+    pub fn of_volume(&self, volume: f64) -> (Material, Option<AvalancheSize>) {
+        let (AnyLaw::SamosAt(law), true) = (self.law, self.by_volume) else { return (self.clone(), None) };
+        let size = AvalancheSize::of(volume);
+        let law = AnyLaw::SamosAt(SamosAt { mu: size.mu(), ..law });
+        (Material { law, mu: Some(size.mu()), ..self.clone() }, Some(size))
+    }
+
     /// The law with one set of parameters for all cells, as the loops of all schemes have it; none for another one.
     #[must_use]
     pub fn law_in_loops(&self) -> Option<Law> {
@@ -127,7 +139,27 @@ impl Friction {
             ));
         }
         let (law, pressure_coefficient) = (self.law(&of_law), pressure.coefficient(mu.unwrap_or(0.0)));
-        Ok(Material { friction: self.name(), mu, law, in_space, pressure_coefficient, gravity, density })
+        let by_volume = self.by_volume(look)?;
+        Ok(Material {
+            friction: self.name(),
+            mu,
+            law,
+            in_space,
+            by_volume,
+            pressure_coefficient,
+            gravity,
+            density,
+        })
+    }
+
+    /// Is mu that of the released volume?
+    fn by_volume(&self, look: &Look) -> Result<bool, CaseError> {
+        let Self::Samosat(law) = self else { return Ok(false) };
+        if law.mu.is_some() && law.size.is_some() {
+            let message = "both `mu` and `size` are given";
+            return Err(look.fault("material.friction.samosat.size", message, "keep one of them"));
+        }
+        Ok(law.size == Some(AvalancheSize::Auto))
     }
 
     /// mu from exactly one of the two ways to write it.

@@ -252,8 +252,12 @@ pub(crate) struct Cohesion {
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub(crate) struct Samosat {
-    /// Friction coefficient mu (default 0.155).
-    pub mu: Parameter,
+    /// Friction coefficient mu (default 0.155); give it or `size`.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub mu: Option<Parameter>,
+    /// AvaFrame's calibration for avalanches of this size.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub size: Option<AvalancheSize>,
     /// Yield stress tau0 in Pa (default 0).
     pub tau0: Parameter,
     /// Constant Rs0 of the fluidisation factor (default 0.222).
@@ -268,8 +272,43 @@ pub(crate) struct Samosat {
 
 impl Default for Samosat {
     fn default() -> Self {
-        let [mu, tau0, rs0, kappa, r, b] = [0.155, 0.0, 0.222, 0.43, 0.05, 4.13].map(Parameter::Number);
-        Self { mu, tau0, rs0, kappa, r, b }
+        let [tau0, rs0, kappa, r, b] = [0.0, 0.222, 0.43, 0.05, 4.13].map(Parameter::Number);
+        Self { mu: None, size: None, tau0, rs0, kappa, r, b }
+    }
+}
+
+/// How large an avalanche is: AvaFrame's calibrations of samosAT (com1DFACfg.ini of AvaFrame 2.1).
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum AvalancheSize {
+    /// By the released volume.
+    Auto,
+    /// Below 25,000 m^3: mu = 0.22.
+    Small,
+    /// Below 60,000 m^3: mu = 0.17.
+    Medium,
+    /// mu = 0.155.
+    Large,
+}
+
+impl AvalancheSize {
+    /// That of a released volume \[m^3\].
+    #[must_use]
+    pub fn of(volume: f64) -> Self {
+        match volume {
+            volume if volume < 25_000.0 => Self::Small,
+            volume if volume < 60_000.0 => Self::Medium,
+            _ => Self::Large,
+        }
+    }
+    /// mu.
+    #[must_use]
+    pub fn mu(self) -> f64 {
+        match self {
+            Self::Small => 0.22,
+            Self::Medium => 0.17,
+            Self::Large | Self::Auto => 0.155,
+        }
     }
 }
 
@@ -334,8 +373,10 @@ impl Quadratic {
 
 impl Samosat {
     pub fn numbers(&self, density: f64) -> Vec<Number<'_>> {
+        let size = self.size.unwrap_or(AvalancheSize::Large);
+        let mu = self.mu.as_ref().map(|mu| Number::of("mu", mu, Range::NotNegative));
         vec![
-            Number::of("mu", &self.mu, Range::NotNegative),
+            mu.unwrap_or(Number::fixed(size.mu())),
             Number::of("tau0", &self.tau0, Range::NotNegative).per(density),
             Number::of("rs0", &self.rs0, Range::NotNegative),
             Number::of("kappa", &self.kappa, Range::Positive),

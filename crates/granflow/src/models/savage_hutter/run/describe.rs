@@ -44,9 +44,9 @@ pub(crate) fn terrain(run: &RunPlan, plan: &OnTerrain) -> Result<Vec<Line>, Star
         TerrainScheme::EnergyStable | TerrainScheme::Balanced => "first order",
         TerrainScheme::EnergyStable2 | TerrainScheme::Balanced2 => "second order",
     };
-    let mut lines = case(run, material(&plan.material), &format!("{order}, film {:e}, ", plan.scheme.film));
-    lines.push(threshold(run, " m"));
     let mut loaded = terrain::load(run, plan)?;
+    let mut lines = case(run, material(&loaded.material), &format!("{order}, film {:e}, ", plan.scheme.film));
+    lines.push(threshold(run, " m"));
     lines.extend(mountain(&loaded, plan.material.gravity));
     let remarks: Vec<Line> = loaded.remarks.iter().map(|one| (one.kind(), one.text().to_owned())).collect();
     let reading = loaded.reading as f64;

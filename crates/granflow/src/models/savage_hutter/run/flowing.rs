@@ -23,6 +23,8 @@ pub struct Flowing<S> {
     on_terrain: bool,
     /// What comes in the course of the run.
     supply: Supply,
+    /// mu, if it was chosen by the volume.
+    chosen: Option<f64>,
     scheme: PhantomData<fn() -> S>,
 }
 
@@ -30,7 +32,15 @@ impl<S> Flowing<S> {
     /// Under this name; a thinner layer than `film` is held. The threshold is the one of a case that says none.
     pub fn new(name: &'static str, film: f64, on_terrain: bool) -> Self {
         let threshold = if on_terrain { terrain::THRESHOLD } else { chute::THRESHOLD };
-        Flowing { name, film, threshold, on_terrain, supply: Supply::default(), scheme: PhantomData }
+        Flowing {
+            name,
+            film,
+            threshold,
+            on_terrain,
+            supply: Supply::default(),
+            chosen: None,
+            scheme: PhantomData,
+        }
     }
     /// The same, where a layer counts in peaks, times and deposit if it is thicker than `threshold` (units of
     /// the thickness, normal to the bed).
@@ -38,10 +48,10 @@ impl<S> Flowing<S> {
     pub fn with_threshold(self, threshold: f64) -> Self {
         Flowing { threshold, ..self }
     }
-    /// The same with what comes in the course of the run.
+    /// The same with what comes in the course of the run, and with mu if that was chosen by the volume.
     #[cfg(feature = "geo")]
-    pub(crate) fn with_supply(self, supply: Supply) -> Self {
-        Flowing { supply, ..self }
+    pub(crate) fn with(self, supply: Supply, chosen: Option<f64>) -> Self {
+        Flowing { supply, chosen, ..self }
     }
 }
 
@@ -153,6 +163,7 @@ where
             ("moving_cells_final".to_owned(), totals.moving as f64),
             ("moving_volume_final".to_owned(), totals.moving_volume),
         ];
+        numbers.extend(self.chosen.map(|mu| ("friction_mu".to_owned(), mu)));
         let waiting = self.supply.unreleased() * simulation.grid().measure();
         if waiting > 0.0 {
             numbers.push(("unreleased_volume".to_owned(), waiting));

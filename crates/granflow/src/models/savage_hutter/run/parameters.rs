@@ -19,6 +19,11 @@ pub(crate) struct InCells {
 }
 
 impl InCells {
+    /// One set of parameters for all cells.
+    pub fn everywhere(material: &Material) -> InCells {
+        InCells { usual: Parameters::of(&material.law), fields: Vec::new(), ranges: Vec::new() }
+    }
+
     /// Reads what differs from place to place, on the cells of `bed`; each value must be one that the law takes.
     pub fn read(
         run: &RunPlan,
@@ -26,8 +31,7 @@ impl InCells {
         (bed, crs): (&Raster, Option<&Crs>),
         remarks: &mut Vec<Remark>,
     ) -> Result<InCells, StartError> {
-        let usual = Parameters::of(&material.law);
-        let mut cells = InCells { usual, fields: Vec::new(), ranges: Vec::new() };
+        let mut cells = Self::everywhere(material);
         for parameter in &material.in_space {
             let mut values = values(run, parameter, (bed, crs), remarks)?;
             let (mut least, mut largest) = (f64::INFINITY, f64::NEG_INFINITY);

@@ -9,6 +9,7 @@ use crate::memory::fits;
 use crate::model::Plane;
 use crate::run::{Run, Simulated, step_size};
 use granflow_case::RunPlan;
+use granflow_case::avalanche::Material;
 use granflow_case::terrain::{Extent, Measured, Over, Plan, Release, Starts, TerrainScheme, Thickness};
 use granflow_engine::grid::Grid;
 use granflow_engine::kernels::Kernel;
@@ -41,6 +42,8 @@ pub(super) struct Loaded {
     /// What was decided while reading, and what looks wrong.
     pub remarks: Vec<Remark>,
     pub survey: Survey,
+    /// The material; where mu is that of the volume, that.
+    pub material: Material,
     /// What of the friction differs from cell to cell.
     pub parameters: InCells,
     /// What comes in the course of the run.
@@ -65,7 +68,7 @@ impl Loaded {
 pub(super) fn simulate(
     run: &RunPlan,
     plan: &Plan,
-    Loaded { terrain, release, remarks, parameters, supply, .. }: Loaded,
+    Loaded { terrain, release, remarks, material, parameters, supply, .. }: Loaded,
 ) -> Result<Box<dyn Run>, StartError> {
     let (bed, gravity) = (&terrain.bed, plan.material.gravity);
     let columns = bed.columns;
@@ -96,9 +99,10 @@ pub(super) fn simulate(
     let ceiling = if supply.is_empty() { gravity * ceiling(&terrain, &release) } else { f64::MAX };
     let ground = move |cell| ground_at(&terrain, gravity, cell);
     let state = move |[i, j]: [usize; 2]| Flow::still(release.get(j * columns + i));
-    let begin = Begin { run, film, grid, plane, supply };
-    let Some(law) = plan.material.law_in_loops() else {
-        let law = plan.material.law;
+    let chosen = material.mu.filter(|_| material.by_volume);
+    let begin = Begin { run, film, grid, plane, supply, chosen };
+    let Some(law) = material.law_in_loops() else {
+        let law = material.law;
         let scheme = match plan.scheme.name {
             TerrainScheme::EnergyStable2 => EnergyStable::second(law, film),
             TerrainScheme::EnergyStable => EnergyStable::first(law, film),
@@ -128,6 +132,8 @@ struct Begin<'a> {
     grid: Grid<2>,
     plane: Plane,
     supply: Supply,
+    /// mu, if it was chosen by the volume.
+    chosen: Option<f64>,
 }
 
 impl Begin<'_> {
@@ -142,12 +148,12 @@ impl Begin<'_> {
     where
         S: Kernel<2, State = Flow<2, f64>, Ground = ground::Terrain<2, f64>> + 'static,
     {
-        let Begin { run, film, grid, plane, supply } = self;
+        let Begin { run, film, grid, plane, supply, chosen } = self;
         fits(grid.cells.iter().product(), Simulation::<2, S>::bytes_per_cell(false))?;
         let mut simulation = Simulation::new(scheme, grid, step_size(run), ground, state)?;
         simulation.apply(forcing);
         let physics =
-            Flowing::new(run.scheme, film, true).with_threshold(run.output.threshold).with_supply(supply);
+            Flowing::new(run.scheme, film, true).with_threshold(run.output.threshold).with(supply, chosen);
         Ok(Box::new(Simulated::new(simulation, physics, plane)))
     }
 }
@@ -186,11 +192,11 @@ pub(super) fn load(run: &RunPlan, plan: &Plan) -> Result<Loaded, StartError> {
     let (bed, crs, reading) = bed(run, plan, &mut remarks)?;
     let survey = Survey::of(&bed);
     remarks.extend(survey.warnings(&plan.dem.display().to_string()));
-    let parameters = InCells::read(run, &plan.material, (&bed, crs.as_ref()), &mut remarks)?;
     let terrain = curved(run, plan, bed)?;
-    let (release, parts) = (Sparse::default(), Vec::new());
-    let supply = Supply::default();
-    let mut loaded = Loaded { terrain, release, parts, remarks, survey, parameters, supply, reading };
+    let (release, parts, supply) = (Sparse::default(), Vec::new(), Supply::default());
+    let (material, parameters) = (plan.material.clone(), InCells::everywhere(&plan.material));
+    let mut loaded =
+        Loaded { terrain, release, parts, remarks, survey, material, parameters, supply, reading };
     for one in &plan.releases {
         add(&mut loaded, one, crs.as_ref())?;
     }
@@ -199,6 +205,16 @@ pub(super) fn load(run: &RunPlan, plan: &Plan) -> Result<Loaded, StartError> {
         let inflow = inflow(run, one, &key, &mut loaded)?;
         loaded.supply.inflows.push(inflow);
     }
+    let volume = loaded.parts.iter().map(|(_, _, volume)| volume).sum();
+    let (material, size) = plan.material.of_volume(volume);
+    if let (Some(size), Some(mu)) = (size, material.mu) {
+        let size = format!("{size:?}").to_lowercase();
+        let text = format!("samosat: {volume:.0} m3 are a {size} avalanche, mu = {mu}");
+        loaded.remarks.push(Remark::Note(text));
+    }
+    let bed = loaded.terrain.bed.clone();
+    loaded.parameters = InCells::read(run, &material, (&bed, crs.as_ref()), &mut loaded.remarks)?;
+    loaded.material = material;
     trim();
     Ok(loaded)
 }
