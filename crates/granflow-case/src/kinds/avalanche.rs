@@ -7,12 +7,12 @@ mod friction;
 mod scheme;
 mod time;
 
-pub use friction::{AvalancheSize, ByElevation, InSpace, Material, Place, Range};
+pub use friction::{AvalancheSize, ByElevation, FOREST, InSpace, Material, Place, Range};
 pub use scheme::{Method, SchemeName};
 
 pub(super) use scheme::NAMES as SCHEMES;
 
-pub(super) use friction::{EarthPressure, Friction};
+pub(super) use friction::{EarthPressure, Friction, Parameter};
 pub(super) use scheme::{Chosen, Scheme};
 pub(super) use time::Time;
 

@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::avalanche::{self, EarthPressure, Friction, Material, Method, SchemeName};
+use super::avalanche::{self, EarthPressure, Friction, Material, Method, Parameter, SchemeName};
 use super::{About, Foreign, Kind, Written};
 use crate::fault::CaseError;
 use crate::look::Look;
@@ -121,6 +121,9 @@ struct OnTerrain {
     /// The earth-pressure coefficient k: isotropic.
     #[serde(default)]
     earth_pressure: EarthPressure,
+    /// Drag of a forest or of other things that stand on the bed and are not overflown, in 1/m: it takes drag |V|^2.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    forest: Option<Parameter>,
     /// Gravity g (default 9.81 m/s^2).
     #[serde(skip_serializing_if = "Option::is_none")]
     gravity: Option<f64>,
@@ -195,12 +198,9 @@ impl OnTerrain {
         }
         look.usual("material.gravity", self.gravity)?;
         look.usual("material.density", Some(self.density))?;
-        self.friction.material(
-            look,
-            self.earth_pressure,
-            self.gravity.unwrap_or(avalanche::GRAVITY),
-            self.density,
-        )
+        let gravity = self.gravity.unwrap_or(avalanche::GRAVITY);
+        let material = self.friction.material(look, self.earth_pressure, gravity, self.density)?;
+        material.in_forest(look, self.forest.as_ref())
     }
 }
 

@@ -98,6 +98,27 @@ fn one_number_as_raster_polygons_and_classes_gives_the_bits_of_the_number() {
     }
 }
 
+/// A forest without drag is none; with some it brakes.
+#[test]
+fn a_forest_brakes_where_it_stands() {
+    let folder = folder();
+    let folder = folder.path();
+    write_polygons(&folder.join("forest.geojson"), &[([1060.0, 1900.0, 1400.0, 2300.0], "0.05")]);
+    let second = "name = \"energy_stable_2\"";
+    let bare = end(folder, "coulomb = { mu = 0.31 }", second);
+    assert!(bare == end(folder, "coulomb = { mu = 0.31 }\nforest = 0.0", second));
+    let speed = |forest: &str| {
+        let mut run = start(folder, &format!("coulomb = {{ mu = 0.31 }}{forest}"), second).unwrap();
+        run.until(12.0).unwrap();
+        run.record().peak_speed
+    };
+    let forest = "\nforest = { polygons = \"forest.geojson\", attribute = \"mu\", elsewhere = 0.0 }";
+    let (free, braked) = (speed(""), speed(forest));
+    assert!(braked < 0.8 * free, "{braked} m/s instead of {free}");
+    let error = start(folder, "coulomb = { mu = 0.3 }\nforest = -1.0", second).err().unwrap();
+    assert!(error.contains("material.forest") || error.contains("`forest`"), "{error}");
+}
+
 /// A zone that no mass reaches changes nothing; one on the way stops it there.
 #[test]
 fn a_rough_zone_stops_what_enters_it() {

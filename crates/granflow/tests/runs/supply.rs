@@ -123,35 +123,42 @@ fn an_inflow_brings_the_momentum_of_its_speed() {
     );
 }
 
-/// Voellmy on a plane: q = h v and v^2 = xi h (sin - mu cos). Slow enough (Fr^2 = xi (tan - mu)/g = 1.5) to make no roll waves, which grow
-/// from Fr = 2 on.
+/// The depth on the plane b = 300 - 0.4 x under a steady discharge of 2 m^2/s, away from the line where it enters.
+fn steady(friction: &str, scheme: &str) -> Vec<f64> {
+    let folder = tempfile::tempdir().unwrap();
+    write_grid(&folder.path().join("dem.asc"), [60, 41], |x, _| 300.0 - 0.4 * x);
+    let path = folder.path().join("case.toml");
+    let text = format!(
+        "[terrain]\ndem = \"dem.asc\"\ncrs = \"EPSG:31287\"\n[material]\ndensity = 200.0\n{friction}\n\
+         [scheme]\nname = \"{scheme}\"\n[[inflow]]\nline = [[22.5, 0.0], [22.5, 205.0]]\n\
+         hydrograph = {{ time = [0.0, 500.0], discharge = [410.0, 410.0], speed = [4.0, 4.0] }}\n[time]\nend = 150.0\n"
+    );
+    fs::write(&path, text).unwrap();
+    let mut run = Case::read(&path).unwrap().check().unwrap().start().unwrap();
+    run.until(150.0).unwrap();
+    let h: Vec<f64> = run.field("thickness").unwrap().iter().collect();
+    h[20 * 60 + 30..20 * 60 + 55].to_vec()
+}
+
+/// Voellmy: q = h v and v^2 = xi h (sin - mu cos), slow enough (Fr^2 = xi (tan - mu)/g = 1.5) to make no roll waves, which grow
+/// from Fr = 2 on. In a forest: v^2 = g (sin - mu cos)/drag, whatever the depth.
 #[test]
 fn a_steady_inflow_reaches_the_uniform_depth_of_its_discharge() {
-    let folder = tempfile::tempdir().unwrap();
-    let slope = 0.4_f64;
-    write_grid(&folder.path().join("dem.asc"), [60, 41], |x, _| 300.0 - slope * x);
-    let (mu, xi, width) = (0.3, 150.0, 205.0);
-    let [sin, cos] = [slope, 1.0].map(|leg| leg / 1.0_f64.hypot(slope));
-    let discharge = 410.0;
-    let per_width: f64 = discharge / width;
-    let depth = (per_width * per_width / (xi * (sin - mu * cos))).cbrt();
-    let path = folder.path().join("case.toml");
+    let [sin, cos] = [0.4, 1.0].map(|leg| leg / 1.0_f64.hypot(0.4));
+    let per_width = 410.0_f64 / 205.0;
+    let pull = sin - 0.3 * cos;
+    let voellmy = (per_width * per_width / (150.0 * pull)).cbrt();
+    let forest = per_width / (9.81 * pull / 0.05).sqrt();
     for scheme in ["energy_stable", "energy_stable_2"] {
-        let text = format!(
-            "[terrain]\ndem = \"dem.asc\"\ncrs = \"EPSG:31287\"\n[material]\ndensity = 200.0\n\
-             friction.voellmy = {{ mu = {mu}, xi = {xi:?} }}\n[scheme]\nname = \"{scheme}\"\n\
-             [[inflow]]\nline = [[22.5, 0.0], [22.5, 205.0]]\n\
-             hydrograph = {{ time = [0.0, 500.0], discharge = [{discharge:?}, {discharge:?}], speed = [4.0, 4.0] }}\n\
-             [time]\nend = 150.0\n"
-        );
-        fs::write(&path, text).unwrap();
-        let mut run = Case::read(&path).unwrap().check().unwrap().start().unwrap();
-        run.until(150.0).unwrap();
-        let h: Vec<f64> = run.field("thickness").unwrap().iter().collect();
-        let middle = &h[20 * 60 + 30..20 * 60 + 55];
-        let worst = middle.iter().map(|h| (h / depth - 1.0).abs()).fold(0.0, f64::max);
-        println!("{scheme}: {depth} m to {worst:e}");
-        assert!(worst < 1e-6, "{scheme}: {middle:?} instead of {depth}");
+        for (friction, depth) in [
+            ("friction.voellmy = { mu = 0.3, xi = 150.0 }", voellmy),
+            ("friction.coulomb = { mu = 0.3 }\nforest = 0.05", forest),
+        ] {
+            let found = steady(friction, scheme);
+            let worst = found.iter().map(|h| (h / depth - 1.0).abs()).fold(0.0, f64::max);
+            println!("{scheme}, {friction}: {depth} m to {worst:e}");
+            assert!(worst < 1e-6, "{scheme}, {friction}: {found:?} instead of {depth}");
+        }
     }
 }
 

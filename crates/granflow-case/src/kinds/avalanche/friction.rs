@@ -9,7 +9,9 @@ use serde::{Deserialize, Serialize};
 mod laws;
 mod parameter;
 
-use parameter::{Number, Parameter};
+use parameter::Number;
+
+pub(crate) use parameter::Parameter;
 
 pub use laws::AvalancheSize;
 pub(crate) use laws::Friction;
@@ -81,6 +83,26 @@ impl Material {
         };
         let message = format!("{what}, which {} cannot compute", scheme.as_str());
         Err(look.fault("scheme.name", message, "use energy_stable or energy_stable_2, which can"))
+    }
+}
+
+/// The number of [`InSpace::index`] that is no parameter of the law but the drag of a forest.
+pub const FOREST: usize = 6;
+
+impl Material {
+    /// The same in a forest with this drag, if there is one.
+    pub(crate) fn in_forest(mut self, look: &Look, drag: Option<&Parameter>) -> Result<Material, CaseError> {
+        let (Some(drag), key, range) = (drag, "material.forest", Range::NotNegative) else { return Ok(self) };
+        let place = match drag.place(look, key, range)? {
+            Some(place) => place,
+            None => {
+                let number = drag.usual();
+                look.number(key, number, |v| range.fits(v, 0.0), &range.allowed())?;
+                Place::Everywhere(number)
+            }
+        };
+        self.in_space.push(InSpace { index: FOREST, key: key.to_owned(), place, range, per: 1.0 });
+        Ok(self)
     }
 }
 

@@ -2,7 +2,7 @@
 
 use crate::StartError;
 use granflow_case::RunPlan;
-use granflow_case::avalanche::{InSpace, Material, Place};
+use granflow_case::avalanche::{FOREST, InSpace, Material, Place};
 use granflow_geo::Remark;
 use granflow_geo::raster::{Crs, Raster, Reading};
 use granflow_geo::release::Layer;
@@ -66,7 +66,14 @@ impl InCells {
     /// The parameters of a cell.
     pub fn at(&self, cell: usize) -> Parameters<f64> {
         let here = self.fields.iter().filter(|(_, values)| !values[cell].is_nan());
-        here.fold(self.usual, |all, (index, values)| all.with(*index, values[cell]))
+        let mut all = self.usual;
+        for (index, values) in here {
+            match *index {
+                FOREST => all.drag = values[cell],
+                index => all = all.with(index, values[cell]),
+            }
+        }
+        all
     }
 }
 
