@@ -18,6 +18,8 @@ pub(super) struct Gives<const D: usize, R: Real> {
     pub lambda: [R; D],
     /// It moves.
     pub flows: R::Mask,
+    /// It gives nothing, whatever happens.
+    pub shut: R::Mask,
 }
 
 impl<const D: usize, R: Real> Gives<D, R> {
@@ -29,7 +31,7 @@ impl<const D: usize, R: Real> Gives<D, R> {
         offer: &mut FaceStatesOf<D, R, B, T>,
     ) {
         let (zero, one, h) = (R::zero(), R::splat(1.0), offer.h.positive_part());
-        offer.wave = (offer.head * h).sqrt();
+        offer.wave = R::select(self.shut, zero, (offer.head * h).sqrt());
         let all: [R; D] = per_axis!(axis => {
             let faces: [R; 2] = per_axis!(side => {
                 let (donor, kinetic) = (offer.donor(axis, side), offer.bound(axis, side, self.lambda[axis]));
@@ -43,7 +45,7 @@ impl<const D: usize, R: Real> Gives<D, R> {
         if R::any(more) {
             offer.share = R::select(more, most / R::select(more, all, one), one);
         }
-        offer.room = (h - all.min(most)) * R::splat(SPREADS_OF_REST);
+        offer.room = R::select(self.shut, zero, (h - all.min(most)) * R::splat(SPREADS_OF_REST));
     }
 
     /// What it can pay for: the kinetic energy of what stays, on which the predicted inflow draws.

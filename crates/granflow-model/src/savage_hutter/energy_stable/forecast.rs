@@ -118,9 +118,11 @@ impl<F: LocalFriction, B: Copy, const ORDER: u8> EnergyStable<F, B, ORDER> {
             let loss = dt * law.dry * R::splat(STEPS_TO_STOP);
             let (none, square) = (loss.le(zero), bed.square(u));
             code = one;
-            if R::any(square.lt(R::splat(4.0) * (loss * loss))) {
+            let slow = square.lt(R::splat(4.0) * (loss * loss)) & !none;
+            if R::any(slow) {
                 let free = (square.sqrt() / R::select(none, one, loss) - one).positive_part().min(one);
-                code = R::select(none, one, free);
+                // Where it is not slow the quotient may round to less than 1.
+                code = R::select(slow, free, one);
             }
             if R::any(still & !dry) {
                 let (held, tower) = self.balance(&near, law.holding);

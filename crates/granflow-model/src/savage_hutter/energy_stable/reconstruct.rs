@@ -93,7 +93,8 @@ where
             dt,
         );
         offer.w = per_axis!(k => R::select(shut, zero, w[k]));
-        offer.free = per_axis!(k => sides[k].freedom());
+        // What is shut offers the same as if all cells beside it were.
+        offer.free = per_axis!(k => R::select(shut, zero, sides[k].freedom()));
         offer.holds = per_axis!(k => law.holding * near.spacing.size[k]);
         // What friction stops gives nothing; what nothing resists still gives its thermal part.
         let stops = is_zero(offer.w) & zero.lt(law.dry) & !shut;
@@ -104,7 +105,7 @@ where
         let code = offer.motion.code;
         let stopped = stops & !offer.motion.is_tower();
         offer.motion = Motion { code: R::select(stopped, R::splat(Motion::<R>::STOPS), code) };
-        let gives = Gives { lambda, flows: !(stops | shut) };
+        let gives = Gives { lambda, flows: !(stops | shut), shut };
         gives.offers::<B, _>(&sides, &mut offer);
         gives.budget::<B, _, _>(&near, &sides, &mut offer);
         offer

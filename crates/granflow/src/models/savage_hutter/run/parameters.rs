@@ -47,7 +47,7 @@ impl InCells {
                 (least, largest) = (least.min(*value), largest.max(*value));
                 *value /= parameter.per;
             }
-            if !matches!(parameter.place, Place::Everywhere(_)) {
+            if parameter.index == FOREST || !matches!(parameter.place, Place::Everywhere(_)) {
                 cells.ranges.push((parameter.key.clone(), [least, largest]));
             }
             cells.fields.push((parameter.index, values));
