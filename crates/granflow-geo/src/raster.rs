@@ -10,6 +10,7 @@ mod projection;
 mod register;
 mod resample;
 mod room;
+mod scale;
 mod system;
 mod wkt;
 
@@ -19,6 +20,7 @@ pub use resample::intervals;
 pub use system::Comparison;
 
 use declared::Declared;
+use scale::Scale;
 use system::Heights;
 
 use crate::Remark;
@@ -27,6 +29,10 @@ use std::path::{Path, PathBuf};
 
 /// Values that stand for nodata wherever they occur.
 const UNDECLARED: [f64; 4] = [-9999.0, -32768.0, -32767.0, -99999.0];
+
+/// A map whose lengths are wrong by a larger share is refused, and one beyond the smaller is warned of. UTM is true to 0.1 %.
+const DISTORTED: f64 = 0.02;
+const DOUBTFUL: f64 = 0.005;
 
 /// A grid of square cells, north up on disk and south first in memory.
 #[derive(Debug, Clone, PartialEq)]
@@ -105,6 +111,12 @@ impl Reading {
         mut notes: Vec<Remark>,
     ) -> Result<Reading, RasterError> {
         let mut raster = raster.checked(path)?;
+        if let (Some(crs), Some(scale)) = (&raster.crs, raster.scale())
+            && let Scale::At { factors, .. } = scale
+            && scale.error() > DOUBTFUL
+        {
+            notes.push(error::nearly_to_scale(path, crs, factors));
+        }
         let systems = raster.crs.iter().chain(given);
         let heights = declared.heights.or(systems.filter_map(Crs::heights).next());
         let [factor, offset] = Declared { heights, ..declared }.to_metres(path, &mut notes)?;
@@ -226,6 +238,14 @@ impl Raster {
         self.crs.as_ref().is_some_and(Crs::is_geographic) || globe && self.cell < 1.0 && steep
     }
 
+    /// The scale of a map of the world where it is worst: in the middle, or at the southern or northern edge.
+    fn scale(&self) -> Option<Scale> {
+        let crs = self.crs.as_ref()?;
+        let (x, middle) = (0.5 * (self.west + self.east()), 0.5 * (self.south + self.north()));
+        let scales = [middle, self.south, self.north()].into_iter().filter_map(|y| crs.scale([x, y]));
+        scales.max_by(|a, b| a.error().total_cmp(&b.error()))
+    }
+
     /// The demands on every raster: metres, and at least one value.
     fn checked(self, path: &Path) -> Result<Raster, RasterError> {
         if self.geographic() {
@@ -236,8 +256,8 @@ impl Raster {
         {
             return Err(RasterError::unit(path, self.crs.as_ref(), metres, self.cell));
         }
-        if self.crs.as_ref().is_some_and(|crs| !crs.is_true_to_scale()) {
-            return Err(RasterError::web_map(path, &self));
+        if let Some(scale) = self.scale().filter(|scale| scale.error() > DISTORTED) {
+            return Err(RasterError::not_to_scale(path, &self, scale));
         }
         let Some((low, high)) = self.range() else {
             return Err(RasterError::Empty { path: path.into(), cells: self.values.len() });

@@ -1,5 +1,6 @@
 //! Releases: where material lies at the start and how thick, per cell of the terrain.
 
+mod cap;
 mod corners;
 mod coverage;
 mod error;
@@ -10,8 +11,9 @@ mod table;
 mod vector;
 mod zones;
 
+pub use cap::cap;
 pub use coverage::shares as covered_shares;
-pub use error::ReleaseError;
+pub use error::{Form, ReleaseError};
 pub use inlets::along;
 pub use outlines::Outlines;
 pub use sparse::Sparse;
@@ -186,7 +188,11 @@ fn laid(layer: Layer, thickness: &Thickness, template: &Raster) -> Result<Sparse
     }
     let ([west, south], [east, north]) = (extent.lower(), extent.upper());
     let bounds = [west, south, east, north];
-    let height = kept(path, height.into_iter().collect(), template, bounds, 1.0 - covered / area)?;
+    let lost = 1.0 - covered / area;
+    if lost > LOST {
+        return Err(ReleaseError::outside(path, bounds, template, lost));
+    }
+    let height: Sparse = height.into_iter().collect();
     match height.most() > 0.0 {
         true => Ok(height),
         false => Err(ReleaseError::Nothing { path: path.into(), problem: "the thickness is 0 everywhere" }),
@@ -229,51 +235,11 @@ pub fn carried(path: &Path, given: &Raster, template: &Raster) -> Result<Sparse,
     };
     let arrived = height.iter().map(|(_, h)| h).sum::<f64>() * template.cell * template.cell;
     let bounds = [given.west, given.south, given.east(), given.north()];
-    kept(path, height, template, bounds, 1.0 - arrived / total)
-}
-
-/// Thickness per cell \[m\] of the parabolic cap h = height max(0, 1 - r^2 / radius^2), r the horizontal distance of the
-/// cell's centre from `centre` \[m\].
-///
-/// # Errors
-/// [`ReleaseError::Cap`] where the height or radius is not above 0, or no cell with a value lies under the cap.
-pub fn cap(height: f64, centre: [f64; 2], radius: f64, template: &Raster) -> Result<Sparse, ReleaseError> {
-    let error = |problem: String| ReleaseError::Cap { problem };
-    for (name, value) in [("height", height), ("radius", radius)] {
-        if !(value > 0.0 && value.is_finite()) {
-            return Err(error(format!("its {name} must be above 0, found {value}")));
-        }
+    let lost = 1.0 - arrived / total;
+    if lost <= LOST {
+        return Ok(height);
     }
-    let at = |k: usize| {
-        let [x, y] =
-            [template.x(k % template.columns) - centre[0], template.y(k / template.columns) - centre[1]];
-        let inside = 1.0 - (x * x + y * y) / (radius * radius);
-        if template.values[k].is_nan() { 0.0 } else { height * inside.max(0.0) }
-    };
-    let thickness = Sparse::of((0..template.values.len()).map(at));
-    if thickness.most() == 0.0 {
-        let (west, south) = (template.west, template.south);
-        return Err(error(format!(
-            "no cell with a value lies within {radius} m of its centre ({}, {}); the terrain extends over x {west} to \
-             {}, y {south} to {}",
-            centre[0],
-            centre[1],
-            template.east(),
-            template.north()
-        )));
-    }
-    Ok(thickness)
-}
-
-/// `height` where no more than [`LOST`] of a release is lost, else the error that says where it and the terrain lie.
-fn kept(
-    path: &Path,
-    height: Sparse,
-    template: &Raster,
-    bounds: [f64; 4],
-    lost: f64,
-) -> Result<Sparse, ReleaseError> {
-    if lost <= LOST { Ok(height) } else { Err(ReleaseError::outside(path, bounds, template, lost)) }
+    Err(ReleaseError::outside_as(Form::Raster, path, bounds, template, lost))
 }
 
 fn thickness_of(path: &Path, feature: &Feature, thickness: &Thickness) -> Result<f64, ReleaseError> {

@@ -1,5 +1,6 @@
 //! Coordinate reference systems, as far as a raster must know its own: an EPSG code, a WKT text, or both.
 
+use super::scale::Scale;
 use super::system::{Comparison, HORIZONTAL, Heights, Kind, System};
 use super::wkt::Node;
 use thiserror::Error;
@@ -52,6 +53,9 @@ impl Crs {
 
     /// The system of a code, and the heights of another; `None` for heights over a system that is not in the register.
     pub(super) fn coded(code: u32, vertical: Option<u32>) -> Option<Crs> {
+        if let Some(wkt) = super::register::world_map(code) {
+            return Some(Crs { epsg: None, wkt: Some(wkt) });
+        }
         let known = well_known_text(code);
         if let Some(vertical) = vertical {
             let unit = match Heights::coded(vertical) {
@@ -87,9 +91,9 @@ impl Crs {
         self.system()?.unit
     }
 
-    /// Whether lengths on the map are lengths on the ground; on the Mercator map of the web they are not.
-    pub(super) fn is_true_to_scale(&self) -> bool {
-        self.system().is_none_or(|system| system.is_true_to_scale())
+    /// The scale of a map of the world at a place in its coordinates; `None` where nothing is known against it.
+    pub(super) fn scale(&self, place: [f64; 2]) -> Option<Scale> {
+        self.system()?.scale(place)
     }
 
     /// What the system says of heights.

@@ -1,6 +1,8 @@
 //! What can be wrong with a raster file, each with its cure.
 
+use super::scale::Scale;
 use super::{Crs, Raster};
+use crate::Remark;
 use std::path::{Path, PathBuf};
 use thiserror::Error;
 
@@ -91,22 +93,24 @@ pub enum RasterError {
         /// What is wrong and what helps.
         problem: String,
     },
-    /// A map of the web: one metre on it is cos(latitude) metres.
+    /// A map of the world, on which lengths are not those on the ground.
     #[error(
-        "{path} is in {found}, where lengths are too long by 1/cos(latitude) ({percent:.0} % here); {cure}",
-        path = path.display(), cure = reproject(path, *epsg, *cell)
+        "{path} is in {found}, {wrong}; {cure}",
+        path = path.display(), wrong = wrong(*percent), cure = match place {
+            Some((epsg, cell)) => reproject(path, *epsg, *cell),
+            None => anywhere(path),
+        }
     )]
-    WebMap {
+    NotToScale {
         /// The file.
         path: PathBuf,
         /// The system.
         found: String,
-        /// By how much lengths are too long \[%\].
-        percent: f64,
-        /// The UTM zone that fits.
-        epsg: u32,
-        /// A cell size in metres that fits.
-        cell: f64,
+        /// Percent by which lengths on the map are too long, or too short, eastward and northward; none of a map whose scale is
+        /// not computed.
+        percent: Option<[f64; 2]>,
+        /// The UTM zone that fits, and a cell size in metres.
+        place: Option<(u32, f64)>,
     },
     /// Cells are not square.
     #[error(
@@ -214,21 +218,16 @@ impl RasterError {
         RasterError::Geographic { path: path.into(), found, epsg: utm(x, y), cell }
     }
 
-    /// The position of a web map's centre is that of a sphere: x = R lambda, y = R ln tan(pi/4 + phi/2).
-    pub(super) fn web_map(path: &Path, raster: &Raster) -> RasterError {
-        const RADIUS: f64 = 6_378_137.0;
-        let (x, y) = (0.5 * (raster.west + raster.east()), 0.5 * (raster.south + raster.north()));
-        let (longitude, latitude) = (x / RADIUS, (y / RADIUS).sinh().atan());
+    pub(super) fn not_to_scale(path: &Path, raster: &Raster, scale: Scale) -> RasterError {
         let found = raster.crs.as_ref().map(Crs::describe).unwrap_or_default();
-        let percent = 100.0 * (1.0 / latitude.cos() - 1.0);
-        let epsg = utm(longitude.to_degrees(), latitude.to_degrees());
-        RasterError::WebMap {
-            path: path.into(),
-            found,
-            percent,
-            epsg,
-            cell: two_digits(raster.cell * latitude.cos()),
-        }
+        let (percent, place) = match scale {
+            Scale::World => (None, None),
+            Scale::At { factors, degrees } => {
+                let cell = two_digits(raster.cell / (factors[0] * factors[1]).sqrt());
+                (Some(percent(factors)), Some((utm(degrees[0], degrees[1]), cell)))
+            }
+        };
+        RasterError::NotToScale { path: path.into(), found, percent, place }
     }
 
     pub(super) fn unit(path: &Path, crs: Option<&Crs>, metres: f64, cell: f64) -> RasterError {
@@ -249,6 +248,51 @@ impl RasterError {
 fn utm(longitude: f64, latitude: f64) -> u32 {
     let zone = (((longitude + 180.0) / 6.0).floor().rem_euclid(60.0)) as u32 + 1;
     if latitude < 0.0 { 32700 + zone } else { 32600 + zone }
+}
+
+/// By how many percent lengths are too long.
+fn percent(factors: [f64; 2]) -> [f64; 2] {
+    factors.map(|factor| 100.0 * (factor - 1.0))
+}
+
+/// In what way lengths are wrong.
+fn wrong(percent: Option<[f64; 2]>) -> String {
+    match percent {
+        Some(percent) => format!("where {}", lengths(percent)),
+        None => "a map of the world, on which lengths are not those on the ground".into(),
+    }
+}
+
+fn lengths(percent: [f64; 2]) -> String {
+    let way = |percent: f64| -> String {
+        match percent {
+            _ if percent.abs() < 0.05 => "true".into(),
+            _ if percent < 0.0 => format!("{:.1} % too short", -percent),
+            _ => format!("{percent:.1} % too long"),
+        }
+    };
+    match percent.map(way) {
+        [east, north] if east == north => format!("lengths are {east} here"),
+        [east, north] => format!("lengths are {east} eastward and {north} northward here"),
+    }
+}
+
+/// The warning of a map on which lengths are a little wrong.
+pub(super) fn nearly_to_scale(path: &Path, crs: &Crs, factors: [f64; 2]) -> Remark {
+    let (path, found, lengths) = (path.display(), crs.describe(), lengths(percent(factors)));
+    Remark::Warning(format!(
+        "{path}: it is in {found}, where {lengths}, and slopes and areas are wrong with them; a system made for this place \
+         has true lengths (UTM, the national one; see epsg.io)"
+    ))
+}
+
+/// How a raster comes into a system in metres, where nothing is known of its place.
+fn anywhere(path: &Path) -> String {
+    let (path, stem) = (path.display(), stem(path));
+    format!(
+        "reproject with\n  gdalwarp -t_srs EPSG:xxxx -r bilinear {path} {stem}_metres.tif\n\
+         (EPSG:xxxx: the UTM zone or the national system of its place, see epsg.io)"
+    )
 }
 
 /// How a raster comes into a system in metres.

@@ -11,7 +11,7 @@ pub(super) struct Projection {
 }
 
 /// Methods by their name without blanks and underscores; others go by the name itself.
-const METHODS: [(&str, &[&str]); 15] = [
+const METHODS: [(&str, &[&str]); 16] = [
     ("transverse_mercator", &["transversemercator", "gausskruger", "transversemercatorcomplex"]),
     (
         "lambert_conformal_conic",
@@ -53,30 +53,37 @@ const METHODS: [(&str, &[&str]); 15] = [
             "hotineobliquemercatorvariantb",
         ],
     ),
-    ("mercator", &["mercator", "mercator1sp", "mercator2sp", "mercatorvarianta", "mercatorvariantb"]),
+    (MERCATOR, &["mercator", "mercator1sp", "mercator2sp", "mercatorvarianta", "mercatorvariantb"]),
     (PSEUDO_MERCATOR, &["mercatorauxiliarysphere", "popularvisualisationpseudomercator"]),
-    ("equirectangular", &["equirectangular", "platecarree", "equidistantcylindrical"]),
+    (
+        EQUIDISTANT,
+        &["equirectangular", "platecarree", "equidistantcylindrical", "equidistantcylindricalspherical"],
+    ),
+    (EQUAL_AREA, &["cylindricalequalarea", "lambertcylindricalequalarea"]),
     ("cassini_soldner", &["cassinisoldner", "cassini"]),
     ("polyconic", &["polyconic", "americanpolyconic"]),
     (KROVAK, &["krovak", "krovaknorthorientated"]),
     ("lambert_belgium", &["lambertconformalconic2spbelgium", "lambertconicconformal2spbelgium"]),
 ];
 
+pub(super) const MERCATOR: &str = "mercator";
 /// The method of web maps.
 pub(super) const PSEUDO_MERCATOR: &str = "pseudo_mercator";
+pub(super) const EQUIDISTANT: &str = "equirectangular";
+pub(super) const EQUAL_AREA: &str = "cylindrical_equal_area";
 const POLAR: &str = "polar_stereographic";
 const KROVAK: &str = "krovak";
 
-const LATITUDE: &str = "latitude of origin";
-const LONGITUDE: &str = "longitude of origin";
-const PARALLEL_1: &str = "first standard parallel";
+pub(super) const LATITUDE: &str = "latitude of origin";
+pub(super) const LONGITUDE: &str = "longitude of origin";
+pub(super) const PARALLEL_1: &str = "first standard parallel";
 const PARALLEL_2: &str = "second standard parallel";
 const PSEUDO_PARALLEL: &str = "pseudo standard parallel";
 const AZIMUTH: &str = "azimuth";
 const GRID_ANGLE: &str = "angle of the grid";
-const SCALE: &str = "scale factor";
-const EASTING: &str = "false easting";
-const NORTHING: &str = "false northing";
+pub(super) const SCALE: &str = "scale factor";
+pub(super) const EASTING: &str = "false easting";
+pub(super) const NORTHING: &str = "false northing";
 
 /// Parameters by their name without blanks and underscores; others go by the name itself.
 const PARAMETERS: [(&str, &[&str]); 10] = [
@@ -202,12 +209,13 @@ impl Projection {
         self.method = if north { "krovak_north" } else { KROVAK }.into();
     }
 
-    fn own(&self, name: &str) -> Option<f64> {
+    /// The value of a parameter, where it is said.
+    pub fn own(&self, name: &str) -> Option<f64> {
         self.parameters.iter().find(|(own, _)| own == name).map(|(_, value)| *value)
     }
 
     /// The value of a parameter, or what it is where nobody says it.
-    fn value(&self, name: &str) -> f64 {
+    pub fn value(&self, name: &str) -> f64 {
         let default = match name {
             SCALE => 1.0,
             GRID_ANGLE => self.own(AZIMUTH).unwrap_or(0.0),

@@ -1,7 +1,8 @@
 //! A coordinate reference system in one form, whatever defines it: datum, projection, parameters, units.
 
-use super::projection::{PSEUDO_MERCATOR, Projection};
+use super::projection::Projection;
 use super::register;
+use super::scale::{Globe, Scale};
 use super::wkt::Node;
 
 /// How two systems compare.
@@ -102,9 +103,13 @@ impl System {
         })
     }
 
-    /// Whether lengths on the map are lengths on the ground, to a few parts in a thousand: not on web maps.
-    pub fn is_true_to_scale(&self) -> bool {
-        self.projection.as_ref().is_none_or(|projection| projection.method != PSEUDO_MERCATOR)
+    /// The scale of a map of the world at a place; `None` where nothing is known against it.
+    pub fn scale(&self, place: [f64; 2]) -> Option<Scale> {
+        let globe = self.datum.as_ref().map_or(Globe::WGS_84, |datum| {
+            let [axis, inverse] = datum.ellipsoid;
+            Globe { axis, inverse_flattening: inverse, meridian: datum.meridian }
+        });
+        Scale::of(self.projection.as_ref()?, globe, place)
     }
 
     /// Compares all but the heights.

@@ -172,8 +172,8 @@ pub enum ReleaseError {
         /// What is wrong.
         problem: String,
     },
-    /// A cap without height, without radius, or over no cell with a value.
-    #[error("the cap releases nothing: {problem}")]
+    /// A cap without height, without radius, or with a part over no cell with a value.
+    #[error("the cap {problem}")]
     Cap {
         /// Why, with what is allowed.
         problem: String,
@@ -213,30 +213,94 @@ impl ReleaseError {
     }
 
     pub(super) fn outside(path: &Path, release: [f64; 4], template: &Raster, lost: f64) -> ReleaseError {
+        Self::outside_as(Form::Polygons, path, release, template, lost)
+    }
+
+    pub(super) fn outside_as(
+        form: Form,
+        path: &Path,
+        release: [f64; 4],
+        template: &Raster,
+        lost: f64,
+    ) -> ReleaseError {
         let terrain = [template.west, template.south, template.east(), template.north()];
         let apart = (0..2).any(|k| release[k] >= terrain[k + 2] || release[k + 2] <= terrain[k]);
         let within = (0..2).all(|k| release[k] >= terrain[k] && release[k + 2] <= terrain[k + 2]);
         let degrees =
             release[0] >= -360.0 && release[2] <= 360.0 && release[1] >= -90.0 && release[3] <= 90.0;
-        let [target, about] = Crs::target(template.crs.as_ref());
-        let reproject = format!("ogr2ogr -t_srs {target} reprojected.shp {}{about}", path.display());
         let cure = match (apart, degrees) {
-            (true, true) => format!("the release looks like degrees; reproject it with\n  {reproject}"),
+            (true, true) => format!("the release {}", form.degrees(path, template.crs.as_ref())),
             (true, false) => format!(
-                "the two are probably in different systems; reproject the release with\n  {reproject}"
+                "the two are probably in different systems; reproject the release with\n  {}\n\
+                 (EPSG:xxxx: the system that the release is in)",
+                form.reproject(path, "EPSG:xxxx", template.crs.as_ref())
             ),
-            _ => {
-                "cut the terrain wider, fill its gaps (gdal_fillnodata.py), or shrink the release".to_string()
-            }
+            _ => WIDER.to_string(),
         };
-        let place = if within {
-            "on cells without a value"
-        } else {
-            "beyond the terrain's edge or on cells without a value"
-        };
+        let place = place(within);
         let round = |bounds: [f64; 4]| Box::new(bounds.map(|at| (at * 100.0).round() / 100.0));
         let (release, terrain) = (round(release), round(terrain));
-        let share = if lost > 1.0 - 1e-9 { "all".to_string() } else { format!("{:.2} %", 100.0 * lost) };
+        let share = share(lost);
         ReleaseError::Outside { path: path.into(), share, place, release, terrain, cure }
+    }
+
+    /// That a part of a cap lies where the terrain has no values.
+    pub(super) fn cut([x, y]: [f64; 2], radius: f64, template: &Raster, lost: f64) -> ReleaseError {
+        let [west, south, east, north] = [x - radius, y - radius, x + radius, y + radius];
+        let within = west >= template.west
+            && south >= template.south
+            && east <= template.east()
+            && north <= template.north();
+        let (share, place, terrain) = (share(lost), place(within), Self::extent(template));
+        let problem = format!(
+            "loses {share} of its volume {place}\n  cap x {west} to {east}, y {south} to {north}\n  terrain {terrain}\n{WIDER}"
+        );
+        ReleaseError::Cap { problem }
+    }
+
+    /// Where a terrain lies, in words.
+    pub(super) fn extent(template: &Raster) -> String {
+        let Raster { west, south, .. } = template;
+        format!("x {west} to {}, y {south} to {}", template.east(), template.north())
+    }
+}
+
+/// What helps against a release that the terrain does not hold.
+const WIDER: &str = "cut the terrain wider, fill its gaps (gdal_fillnodata.py), or shrink the release";
+
+/// Where the lost part of a release lies whose box is `within` that of the terrain, or not.
+fn place(within: bool) -> &'static str {
+    if within { "on cells without a value" } else { "beyond the terrain's edge or on cells without a value" }
+}
+
+fn share(lost: f64) -> String {
+    if lost > 1.0 - 1e-9 { "all".to_string() } else { format!("{:.2} %", 100.0 * lost) }
+}
+
+/// What a file holds, which decides the program that reprojects it.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Form {
+    /// Polygons, by `ogr2ogr`.
+    Polygons,
+    /// A raster, by `gdalwarp`.
+    Raster,
+}
+
+impl Form {
+    /// That what a file holds looks like degrees, and the command that brings it into the system of a terrain.
+    pub fn degrees(self, path: &Path, terrain: Option<&Crs>) -> String {
+        format!("looks like degrees; reproject it with\n  {}", self.reproject(path, "EPSG:4326", terrain))
+    }
+
+    /// The command from one system into that of a terrain. It names both, since such a file rarely says its own.
+    fn reproject(self, path: &Path, from: &str, terrain: Option<&Crs>) -> String {
+        let ([target, about], path, stem) =
+            (Crs::target(terrain), path.display(), path.with_extension("").display().to_string());
+        match self {
+            Form::Polygons => format!("ogr2ogr -t_srs {target} -s_srs {from} reprojected.shp {path}{about}"),
+            Form::Raster => {
+                format!("gdalwarp -t_srs {target} -s_srs {from} {path} {stem}_reprojected.tif{about}")
+            }
+        }
     }
 }

@@ -307,6 +307,16 @@ fn thickness_rasters_keep_their_volume() {
     assert!(message.contains("the thickness at (3.375, 1.875) is -0.25 m"), "{message}");
     Raster { west: 9.0, ..heap.clone() }.write_geotiff(&path).unwrap();
     assert!(raster(&path, &ground()).unwrap_err().to_string().contains("beyond the terrain's edge"));
+    let far = Raster { west: 6.5e5, south: 5.2e6, ..heap.clone() };
+    far.write_geotiff(&path).unwrap();
+    let terrain = Raster { crs: Some(Crs::parse("EPSG:31287").unwrap()), ..ground() };
+    let message = raster(&path, &terrain).unwrap_err().to_string();
+    assert!(message.contains("gdalwarp -t_srs EPSG:31287 -s_srs EPSG:xxxx"), "{message}");
+    assert!(message.contains("thickness.tif") && !message.contains("ogr2ogr"), "{message}");
+    let north = Raster { west: 4e5, south: 3e5, ..terrain };
+    Raster { west: 11.0, south: 47.0, ..heap.clone() }.write_geotiff(&path).unwrap();
+    let message = raster(&path, &north).unwrap_err().to_string();
+    assert!(message.contains("looks like degrees") && message.contains("gdalwarp"), "{message}");
     Raster { values: vec![0.0; 12], ..heap }.write_geotiff(&path).unwrap();
     assert!(raster(&path, &ground()).unwrap_err().to_string().contains("releases nothing"));
 }
@@ -323,6 +333,28 @@ fn caps_are_parabolic_and_lie_on_the_terrain() {
             .to_string()
             .contains("height must be above 0, found -1")
     );
+}
+
+#[test]
+fn a_cap_that_the_terrain_does_not_hold_is_refused() {
+    let cut = |centre, radius| cap(2.0, centre, radius, &ground()).unwrap_err().to_string();
+    // The centre is on the western edge: half of the volume lies beyond it.
+    let half = cut([0.0, 3.5], 2.0);
+    assert!(half.contains("the cap loses 50.00 % of its volume beyond the terrain's edge"), "{half}");
+    assert!(half.contains("cap x -2 to 2, y 1.5 to 5.5\n  terrain x 0 to 10, y 0 to 8"), "{half}");
+    // The circle reaches the centre of the cell in the corner, (9.5, 7.5), and none beyond the edge.
+    let gap = cut([8.5, 6.5], 1.45);
+    assert!(
+        gap.contains("of its volume on cells without a value") && gap.contains("gdal_fillnodata"),
+        "{gap}"
+    );
+    for radius in [1e3, 1e12, 1e300] {
+        assert!(cut([4.5, 3.5], radius).contains("terrain x 0 to 10"), "{radius}");
+    }
+    // Circles that no centre of a cell beyond the edge lies in lose nothing.
+    for (centre, radius) in [([0.5, 3.5], 1.0), ([5.0, 4.0], 4.2), ([4.3, 3.9], 3.0)] {
+        assert!(cap(2.0, centre, radius, &ground()).is_ok(), "{centre:?} {radius}");
+    }
 }
 
 #[test]
