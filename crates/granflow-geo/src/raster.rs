@@ -305,6 +305,13 @@ fn agreed(
     Ok(Some(Crs { epsg: own.epsg.or(given.epsg), wkt: own.wkt.clone().or(given.wkt.clone()) }))
 }
 
+/// The note on cells that are infinite and not declared as nodata; `place` says where, if that is known.
+fn infinite(path: &Path, cells: usize, place: &str) -> Remark {
+    let cells = if cells == 1 { "1 cell is".to_owned() } else { format!("{cells} cells are") };
+    let path = path.display();
+    Remark::Note(format!("{path}: {cells} infinite{place}, and taken as nodata"))
+}
+
 /// The note on two systems that could not be compared.
 pub(crate) fn uncertain(path: &Path, own: &Crs, other: &Crs, what: &str) -> Remark {
     let (own, other) = (own.describe(), other.describe());

@@ -245,3 +245,6 @@ impl Comparison {
         Ok([json, figure])
     }
 }
+
+#[cfg(test)]
+mod tests;

@@ -26,6 +26,9 @@ const KEYS: [&str; 10] = [
     "nodata_value",
 ];
 
+/// Keys for one thing.
+const SAME: [[&str; 2]; 3] = [["xllcorner", "xllcenter"], ["yllcorner", "yllcenter"], ["cellsize", "dx"]];
+
 /// Reads a file, and the `.prj` file beside it if there is one; `sidecar` is what the `.aux.xml` file says.
 pub(super) fn read(
     path: &Path,
@@ -48,7 +51,7 @@ pub(super) fn from_bytes(
     given: Option<&Crs>,
     notes: &mut Vec<Remark>,
 ) -> Result<(Raster, Declared), RasterError> {
-    let raster = parse(name, bytes, &sidecar)?;
+    let raster = parse(name, bytes, &sidecar, notes)?;
     let own = match prj.map(|(prj, definition)| (prj, Crs::parse(&String::from_utf8_lossy(definition)))) {
         None => match &sidecar.system {
             Some(text) => Some(Crs::parse(text).map_err(|e| {
@@ -84,9 +87,18 @@ struct Header {
     nodata: Option<f64>,
     /// Nodata is declared as a word that is no number.
     null: bool,
+    /// Nodata is declared as a number that is not finite.
+    endless: bool,
+    /// What was set so far, and on which lines.
+    seen: Vec<(String, usize)>,
 }
 
-fn parse(path: &Path, bytes: &[u8], beside: &Declared) -> Result<Raster, RasterError> {
+fn parse(
+    path: &Path,
+    bytes: &[u8],
+    beside: &Declared,
+    notes: &mut Vec<Remark>,
+) -> Result<Raster, RasterError> {
     let unknown = |found: String| RasterError::Format { path: path.into(), found };
     let text = std::str::from_utf8(bytes).map_err(|_| unknown("it is not text".into()))?;
     let text = text.trim_start_matches('\u{feff}');
@@ -119,6 +131,7 @@ fn parse(path: &Path, bytes: &[u8], beside: &Declared) -> Result<Raster, RasterE
     let mut raster = header.raster(path, last)?;
     let nodata = header.nodata.or(beside.nodata).unwrap_or(NODATA);
     let (columns, rows) = (raster.columns, raster.rows);
+    let (mut infinite, mut first) = (0, 0);
     let mut values = Vec::with_capacity((columns * rows).min(bytes.len() / 2 + 1));
     for (content, line) in lines {
         for word in content.split_ascii_whitespace() {
@@ -126,12 +139,19 @@ fn parse(path: &Path, bytes: &[u8], beside: &Declared) -> Result<Raster, RasterE
             let value = number(word).ok_or_else(found)?;
             let near = |nodata: f64| (value - nodata).abs() <= 1e-7 * nodata.abs();
             let missing = !value.is_finite() || near(nodata) || header.null && near(NULL);
+            if value.is_infinite() && !header.endless {
+                (infinite, first) = (infinite + 1, if infinite == 0 { line } else { first });
+            }
             values.push(if missing { f64::NAN } else { value });
             last = line;
         }
     }
     if values.len() != columns * rows {
         return Err(RasterError::Count { path: path.into(), rows, columns, found: values.len(), line: last });
+    }
+    if infinite > 0 {
+        let place = format!(" (the first on line {first})");
+        notes.push(super::infinite(path, infinite, &place));
     }
     if let Some(opaque) = &beside.mask {
         conceal(path, &mut values, opaque)?;
@@ -174,7 +194,9 @@ impl Header {
             let number = number(found).filter(|v: &f64| v.is_finite());
             number.ok_or_else(|| RasterError::header(path, line, error))
         };
-        match key.to_ascii_lowercase().as_str() {
+        let lower = key.to_ascii_lowercase();
+        self.once(path, line, &lower)?;
+        match lower.as_str() {
             "ncols" => self.columns = Some(count()?),
             "nrows" => self.rows = Some(count()?),
             "xllcorner" => self.west = Some((number()?, false)),
@@ -187,7 +209,7 @@ impl Header {
                 self.null = true;
             }
             "nodata_value" if found.parse::<f64>().is_ok_and(|v| !v.is_finite()) => {
-                self.nodata = Some(NODATA)
+                (self.nodata, self.endless) = (Some(NODATA), true);
             }
             "nodata_value" => self.nodata = Some(number()?),
             _ => {
@@ -195,6 +217,24 @@ impl Header {
                 return Err(RasterError::header(path, line, problem));
             }
         }
+        Ok(())
+    }
+
+    /// Refuses a key that was there before, by its own name or by another for the same.
+    fn once(&mut self, path: &Path, line: usize, key: &str) -> Result<(), RasterError> {
+        let same = |other: &str| {
+            other == key || SAME.iter().any(|names| names.contains(&other) && names.contains(&key))
+        };
+        if let Some((other, first)) = self.seen.iter().find(|(other, _)| same(other)) {
+            let problem = match other == key {
+                true => format!("{key} stands on line {first} already; leave one of the two out"),
+                false => {
+                    format!("{key} says again what {other} says on line {first}; leave one of the two out")
+                }
+            };
+            return Err(RasterError::header(path, line, problem));
+        }
+        self.seen.push((key.to_owned(), line));
         Ok(())
     }
 
@@ -220,145 +260,4 @@ impl Header {
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-
-    fn read(text: &str) -> Result<Raster, RasterError> {
-        parse(Path::new("dem.asc"), text.as_bytes(), &Declared::default())
-    }
-
-    fn refused(text: &str) -> String {
-        read(text).unwrap_err().to_string()
-    }
-
-    const HEADER: &str = "ncols 3\nnrows 2\nxllcorner 10\nyllcorner 20\ncellsize 2\nNODATA_value -1\n";
-
-    #[test]
-    fn rows_are_turned_south_first_and_nodata_becomes_nan() {
-        let raster = read(&format!("{HEADER}1 2 3\n4 nan -1\n")).unwrap();
-        assert_eq!((raster.columns, raster.rows, raster.cell), (3, 2, 2.0));
-        assert_eq!((raster.west, raster.south), (10.0, 20.0));
-        assert_eq!((raster.at(0, 0), raster.at(0, 1), raster.at(2, 1)), (4.0, 1.0, 3.0));
-        assert!(raster.at(1, 0).is_nan() && raster.at(2, 0).is_nan());
-    }
-
-    #[test]
-    fn bytes_are_read_as_the_file_is() {
-        let folder = tempfile::tempdir().unwrap();
-        let path = folder.path().join("dem.asc");
-        let text = format!("{HEADER}1 2 3\n4 5 6\n");
-        std::fs::write(&path, &text).unwrap();
-        let crs = Crs::parse("EPSG:31287").unwrap();
-        let file = Raster::read_in(&path, Some(&crs)).unwrap();
-        assert_eq!(Raster::from_bytes(Path::new("dem.asc"), text.into_bytes(), Some(&crs)).unwrap(), file);
-        let message =
-            Raster::from_bytes(Path::new("a.asc"), b"hello".to_vec(), None).unwrap_err().to_string();
-        assert!(message.contains("a.asc is neither a GeoTIFF nor"), "{message}");
-    }
-
-    #[test]
-    fn odd_but_clear_files_are_read() {
-        let raster = read(
-            "\u{feff}NROWS 2\r\nNCOLS 2\r\nXLLCENTER 1e1\r\nYllCenter 20\r\nCELLSIZE 2.\r\n1\r\n2 3 4\r\n\r\n",
-        );
-        let raster = raster.unwrap();
-        assert_eq!((raster.west, raster.south, raster.values), (9.0, 19.0, vec![3.0, 4.0, 1.0, 2.0]));
-        let nan =
-            read(&HEADER.replace("-1", "nan").replace("nrows 2", "nrows 1").replace("cellsize", "dx")).err();
-        assert!(nan.is_some_and(|e| e.to_string().contains("0 values follow")));
-        let raster =
-            read(&format!("{}nan 1 -9999", HEADER.replace("-1", "nan").replace("nrows 2", "nrows 1")));
-        assert_eq!(raster.unwrap().values.iter().filter(|v| v.is_nan()).count(), 2);
-    }
-
-    #[test]
-    fn headers_in_other_orders_and_commas_are_read() {
-        let expected = read(&format!("{HEADER}1.5 2 3\n4 5 -1\n")).unwrap();
-        for header in [
-            "3 ncols\n2 nrows\n10 xllcorner\n20 yllcorner\n2 cellsize\n-1 NODATA_value\n".to_string(),
-            "ncols 3 nrows 2 xllcorner 10 yllcorner 20 cellsize 2 NODATA_value -1\n".to_string(),
-            HEADER.replace(' ', " = "),
-            HEADER.replace("corner 10", "corner 10,0"),
-        ] {
-            let found = read(&format!("{header}1,5 2 3\n4 5 -1\n")).unwrap();
-            assert_eq!(format!("{found:?}"), format!("{expected:?}"), "{header}");
-        }
-    }
-
-    #[test]
-    fn nodata_that_is_no_number_or_stands_beside_the_file_is_nodata() {
-        let grid = |nodata: &str, values: &str| HEADER.replace("NODATA_value -1\n", nodata) + values;
-        let missing = |text: &str, beside: Option<f64>| {
-            let beside = Declared { nodata: beside, ..Declared::default() };
-            let raster = parse(Path::new("dem.asc"), text.as_bytes(), &beside).unwrap();
-            raster.values.iter().map(|v| u8::from(v.is_nan())).collect::<Vec<_>>()
-        };
-        let body = "1 -9999 -3.4028234663852886e+38\n0 5 6\n";
-        assert_eq!(missing(&grid("NODATA_value null\n", body), None), [0, 0, 0, 0, 1, 1]);
-        assert_eq!(missing(&grid("NODATA_value\n", body), None), [0, 0, 0, 0, 1, 0]);
-        assert_eq!(missing(&grid("", body), Some(0.0)), [1, 0, 0, 0, 0, 0]);
-        assert_eq!(
-            missing(&grid("NODATA_value 5\n", body), Some(0.0)),
-            [0, 1, 0, 0, 0, 0],
-            "the header first"
-        );
-    }
-
-    #[test]
-    fn refusals_name_line_key_and_cure() {
-        let body = "1 2 3 4 5 6";
-        let without = |key: &str| {
-            HEADER.lines().filter(|l| !l.starts_with(key)).fold(String::new(), |a, l| a + l + "\n")
-        };
-        assert!(
-            refused(&format!("{}{body}", without("ncols"))).contains("line 5: the header ends without ncols")
-        );
-        assert!(refused(&format!("{}{body}", without("xll"))).contains("xllcorner or xllcenter"));
-        let odd = HEADER.replace("nrows 2", "nrows two");
-        assert!(
-            refused(&format!("{odd}{body}")).contains("line 2: nrows is a whole number above 0, found two")
-        );
-        assert!(
-            refused(&format!("{HEADER}skew 2\n{body}"))
-                .contains("line 7: unknown key `skew`; allowed are ncols")
-        );
-        let count = refused(&format!("{HEADER}1 2 3\n4 5"));
-        assert!(
-            count.contains("2 rows of 3 values = 6, but 5 values") && count.contains("line 8"),
-            "{count}"
-        );
-        assert!(refused(&format!("{HEADER}1 2 3 4 5 6 7")).contains("but 7 values"));
-        assert!(
-            refused(&format!("{HEADER}1;2;3;4;5;6"))
-                .contains("line 7: `1;2;3;4;5;6` is not a number; values are separated")
-        );
-        assert!(refused(&format!("{HEADER}1 2 3\n4 x 6")).contains("line 8: `x` is not a number"));
-        let tall = HEADER.replace("cellsize 2", "dx 2\ndy 3");
-        assert!(refused(&format!("{tall}{body}")).contains("gdalwarp -tr 2 2 -r bilinear dem.asc"));
-        assert!(
-            refused(&format!("{}{body}", HEADER.replace("size 2", "size -2"))).contains("above 0, found -2")
-        );
-        assert!(refused("hello world").contains("neither a GeoTIFF nor an ESRI ASCII grid"));
-        assert!(refused("1 2 3").contains("it begins with `1`"));
-        assert!(
-            refused("ncols 3 nrows\n1 2").contains("line 1: a header line holds keys, each with a value")
-        );
-        assert!(refused("").contains("gdal_translate"));
-    }
-
-    #[test]
-    fn the_system_comes_from_the_prj_beside_the_grid() {
-        let folder = tempfile::tempdir().unwrap();
-        let path = folder.path().join("dem.asc");
-        std::fs::write(&path, format!("{HEADER}1 2 3\n4 5 6\n")).unwrap();
-        assert_eq!(Raster::read(&path).unwrap().crs, None);
-        std::fs::write(path.with_extension("prj"), "PROJCS[\"Here\",GEOGCS[\"G\"],UNIT[\"Meter\",1.0]]")
-            .unwrap();
-        assert_eq!(Raster::read(&path).unwrap().crs.map(|crs| crs.to_string()), Some("Here".into()));
-        std::fs::write(path.with_extension("prj"), "Projection UTM").unwrap();
-        let message = Raster::read(&path).unwrap_err().to_string();
-        assert!(message.contains("dem.prj") && message.contains("crs = \"EPSG:xxxx\""), "{message}");
-        let given = Crs { epsg: Some(31287), wkt: None };
-        assert_eq!(Raster::read_in(&path, Some(&given)).unwrap().crs, Some(given));
-    }
-}
+mod tests;

@@ -53,7 +53,7 @@ fn decoded(
     let [west, top, cell, height] = place(path, &file, beside.place)?;
     let declared = declared(path, &file, beside)?;
     let crs = system(path, &file, &declared, given, notes)?;
-    let mut values = samples::values(path, &file, &declared)?;
+    let mut values = samples::values(path, &file, &declared, notes)?;
     let (columns, rows) = (file.width() as usize, file.height() as usize);
     let south = if height < 0.0 { top + rows as f64 * height } else { top };
     if height < 0.0 {

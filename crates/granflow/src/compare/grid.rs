@@ -62,6 +62,14 @@ impl CellGrid {
             .map(|step| [0, 1].map(|axis| self.low[axis] + (at[axis] + step[axis]) as f64 * self.size[axis]))
     }
 
+    /// The ends [low, high] along x and y.
+    pub fn bounds(&self) -> [[f64; 2]; 2] {
+        [0, 1].map(|axis| {
+            let low = self.low[axis];
+            [low, low + self.count[axis] as f64 * self.size[axis]]
+        })
+    }
+
     /// The cell that a place lies in.
     pub fn at(&self, place: [f64; 2]) -> Option<usize> {
         let mut found = [0; 2];

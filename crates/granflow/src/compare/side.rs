@@ -7,7 +7,7 @@ use super::{By, CompareError, Measured};
 use crate::model::{Domain, ResultFile, Units};
 use crate::output::summary::StopReason;
 use crate::raster::{Comparison, Crs, RasterError, Reading};
-use crate::release::{Layer, ReleaseError};
+use crate::release::{Form, Layer, ReleaseError};
 use crate::results::{FilesError, Story};
 use geo::{MultiPolygon, unary_union};
 use std::fs::File;
@@ -122,6 +122,15 @@ impl Side {
             None => vec![true; grid.cells()],
         };
         Some(Area::Cells { grid: *grid, marked })
+    }
+
+    /// The ends [low, high] along x and y of its cells or polygons.
+    fn bounds(&self) -> Option<[[f64; 2]; 2]> {
+        match &self.kind {
+            Kind::Result(run) => Some(run.grid.bounds()),
+            Kind::Raster(grid, _) => Some(grid.bounds()),
+            Kind::Outline => self.area.bounds(),
+        }
     }
 
     /// Mark the cells that are thicker than the threshold.
@@ -284,6 +293,11 @@ pub(super) fn fit([a, b]: &[Side; 2], notes: &mut Vec<String>) -> Result<(), Com
             return apart(problem.into());
         }
     }
+    for (silent, other) in [(a, b), (b, a)] {
+        if let Some(problem) = in_degrees(silent, other) {
+            return apart(problem);
+        }
+    }
     let (Some(own), Some(other)) = (&a.crs, &b.crs) else {
         let silent =
             [(a, b), (b, a)].into_iter().find(|(one, other)| one.crs.is_none() && other.crs.is_some());
@@ -315,6 +329,25 @@ pub(super) fn fit([a, b]: &[Side; 2], notes: &mut Vec<String>) -> Result<(), Com
             )),
         },
     }
+}
+
+/// That a side that says no system is in degrees and the other is not, where they have no place in common: in metres such a small
+/// box beside the origin is far more often a slip.
+fn in_degrees(silent: &Side, other: &Side) -> Option<String> {
+    let form = match &silent.kind {
+        Kind::Raster(..) => Form::Raster,
+        Kind::Outline => Form::Polygons,
+        Kind::Result(_) => return None,
+    };
+    let [own, others] = [silent.bounds()?, other.bounds()?];
+    let degrees = |[x, y]: [[f64; 2]; 2]| {
+        [x, y].iter().zip([360.0, 90.0]).all(|(ends, most)| ends[0] >= -most && ends[1] <= most)
+    };
+    let apart = own.iter().zip(&others).any(|(own, other)| own[0] >= other[1] || own[1] <= other[0]);
+    (silent.crs.is_none() && degrees(own) && !degrees(others) && apart).then(|| {
+        let path = silent.path.display();
+        format!("{path} {}", form.degrees(&silent.path, other.crs.as_ref()))
+    })
 }
 
 /// Find the volumes of the deposits, and their centroids. What a raster holds normal to the bed is turned by the slope of the

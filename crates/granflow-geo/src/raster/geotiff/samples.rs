@@ -1,5 +1,6 @@
 //! The values of a TIFF: what is stored, and what is said to be absent by nodata, by unstored blocks, by masks.
 
+use crate::Remark;
 use crate::raster::RasterError;
 use crate::raster::declared::{Declared, conceal};
 use geotiff_reader::GeoTiffFile;
@@ -12,7 +13,12 @@ const MASK: u64 = 4;
 const REDUCED: u64 = 1;
 
 /// All values of the first band, first row first as stored, NaN for what is absent.
-pub(super) fn values(path: &Path, file: &GeoTiffFile, declared: &Declared) -> Result<Vec<f64>, RasterError> {
+pub(super) fn values(
+    path: &Path,
+    file: &GeoTiffFile,
+    declared: &Declared,
+    notes: &mut Vec<Remark>,
+) -> Result<Vec<f64>, RasterError> {
     let error = |problem: String| RasterError::geotiff(path, problem);
     let ifd = file.tiff().ifd(file.base_ifd_index()).map_err(|e| error(e.to_string()))?;
     let alpha = alpha(path, file, ifd)?;
@@ -23,6 +29,10 @@ pub(super) fn values(path: &Path, file: &GeoTiffFile, declared: &Declared) -> Re
     }
     if let Some(nodata) = declared.nodata {
         fill_unstored(ifd, &mut values, nodata);
+    }
+    let infinite = values.iter().filter(|value| value.is_infinite()).count();
+    if infinite > 0 && !declared.nodata.is_some_and(f64::is_infinite) {
+        notes.push(crate::raster::infinite(path, infinite, ""));
     }
     for value in values.iter_mut().filter(|value| declared.is_missing(**value)) {
         *value = f64::NAN;

@@ -2,6 +2,7 @@
 
 use super::super::tests::sampled;
 use super::keys;
+use crate::Remark;
 use crate::raster::{Crs, Raster, RasterError, Reading};
 use geotiff_writer::{Compression, GeoKeyValue, GeoTiffBuilder, GeoTransform, WriteSample};
 use ndarray::Array2;
@@ -255,4 +256,19 @@ fn an_image_that_its_file_cannot_hold_is_refused_before_room_is_made() {
         let message = Raster::from_bytes(&path, bytes, None).unwrap_err().to_string();
         assert!(message.contains(found) && message.contains("fetch it again"), "{message}");
     }
+}
+
+#[test]
+fn cells_that_are_infinite_are_noted() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("dem.tif");
+    let ground = sampled(4, 3, |x, _| if x < 1.0 { f64::INFINITY } else { 900.0 + x });
+    ground.write_geotiff(&path).unwrap();
+    let reading = crate::raster::Reading::of(&path, None).unwrap();
+    assert!(reading.raster.at(0, 0).is_nan() && reading.raster.at(1, 0) == 901.5);
+    assert!(
+        matches!(&*reading.notes, [Remark::Note(text)] if text.contains("dem.tif: 3 cells are infinite")),
+        "{:?}",
+        reading.notes
+    );
 }
