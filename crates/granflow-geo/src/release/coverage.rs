@@ -1,10 +1,20 @@
 //! How much of each raster cell a polygon covers, exactly.
 
 use crate::raster::Raster;
-use geo::{Area, BoundingRect, LineString, Polygon};
+use geo::{Area, BoundingRect, LineString, MultiPolygon, Polygon};
+use std::collections::BTreeMap;
 
 /// Shares below this are rounding of sums along a row, shares this close to one are one.
 const ROUNDING: f64 = 1e-12;
+
+/// The shares of the cells that the parts of `whole` cover; they do not overlap.
+pub fn together(whole: &MultiPolygon, raster: &Raster) -> BTreeMap<usize, f64> {
+    let mut all: BTreeMap<usize, f64> = BTreeMap::new();
+    for (cell, share) in whole.iter().flat_map(|polygon| shares(polygon, raster)) {
+        *all.entry(cell).or_default() += share;
+    }
+    all
+}
 
 /// Covered shares of the cells, as (cell index, share) with 0 < share <= 1.
 ///

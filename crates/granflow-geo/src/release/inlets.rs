@@ -40,12 +40,8 @@ impl Layer {
             polygons.extend(sound(&self.name, feature.number, feature.polygons.clone())?);
         }
         let whole = unary_union(&polygons);
-        let mut areas: BTreeMap<usize, f64> = BTreeMap::new();
-        for (cell, share) in whole.iter().flat_map(|polygon| coverage::shares(polygon, template)) {
-            if !template.values[cell].is_nan() {
-                *areas.entry(cell).or_default() += share;
-            }
-        }
+        let mut areas = coverage::together(&whole, template);
+        areas.retain(|cell, _| !template.values[*cell].is_nan());
         let covered = areas.values().sum::<f64>() * template.cell * template.cell;
         let Some(extent) = whole.bounding_rect() else {
             return Err(ReleaseError::Nothing { path: self.name.clone(), problem: "it holds no polygon" });

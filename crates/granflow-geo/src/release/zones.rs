@@ -2,8 +2,7 @@
 
 use super::{Layer, ReleaseError, attribute, coverage, same_system, sound};
 use crate::raster::Raster;
-use geo::{BoundingRect, MultiPolygon, Polygon, unary_union};
-use std::collections::BTreeMap;
+use geo::{BoundingRect, MultiPolygon, unary_union};
 
 impl Layer {
     /// The number that `name` gives in each cell of `template`: that of the feature which covers most of the cell, of several the
@@ -25,14 +24,14 @@ impl Layer {
                 return Err(ReleaseError::Value { path: path.into(), feature: feature.number, name, found });
             };
             let polygons = sound(path, feature.number, feature.polygons.clone())?;
-            for (cell, share) in covered(&polygons, template) {
+            for (cell, share) in coverage::together(&unary_union(&polygons), template) {
                 if share > largest[cell] {
                     (largest[cell], values[cell]) = (share, value);
                 }
             }
             all.extend(polygons);
         }
-        for (cell, share) in covered(&all, template) {
+        for (cell, share) in coverage::together(&unary_union(&all), template) {
             bare[cell] -= share;
         }
         if largest.iter().all(|share| *share == 0.0) {
@@ -49,17 +48,6 @@ impl Layer {
         }
         Ok(values)
     }
-}
-
-/// The share of each cell that polygons cover together.
-fn covered(polygons: &[Polygon], template: &Raster) -> BTreeMap<usize, f64> {
-    let mut shares: BTreeMap<usize, f64> = BTreeMap::new();
-    for polygon in unary_union(polygons) {
-        for (cell, share) in coverage::shares(&polygon, template) {
-            *shares.entry(cell).or_default() += share;
-        }
-    }
-    shares
 }
 
 #[cfg(test)]

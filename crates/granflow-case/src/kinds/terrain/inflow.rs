@@ -231,18 +231,22 @@ impl Hydrograph {
         self.time.last().copied().unwrap_or(0.0)
     }
 
+    /// The straight pieces before `time`: the number of the instant at the end of each, its length, and the share of it before `time`.
+    fn pieces(&self, time: f64) -> impl Iterator<Item = (usize, f64, f64)> {
+        let begun = self.time.windows(2).take_while(move |ends| ends[0] < time).enumerate();
+        begun.map(move |(k, ends)| {
+            (k + 1, ends[1] - ends[0], ((time - ends[0]) / (ends[1] - ends[0])).min(1.0))
+        })
+    }
+
     /// The volume that has entered by `time` \[m^3\]: the exact integral of the straight pieces.
     #[must_use]
     pub fn volume(&self, time: f64) -> f64 {
-        let mut volume = 0.0;
-        for (t, q) in self.time.windows(2).zip(self.discharge.windows(2)) {
-            if time <= t[0] {
-                break;
-            }
-            let share = ((time - t[0]) / (t[1] - t[0])).min(1.0);
-            volume += (t[1] - t[0]) * share * (q[0] + 0.5 * share * (q[1] - q[0]));
-        }
-        volume
+        let of = |(k, length, share): (usize, f64, f64)| {
+            let [from, to] = [self.discharge[k - 1], self.discharge[k]];
+            length * share * (from + 0.5 * share * (to - from))
+        };
+        self.pieces(time).map(of).fold(0.0, |sum, part| sum + part)
     }
 
     /// The momentum by volume that has entered by `time`: the integral of discharge times speed \[m^4/s\], exact (Simpson's rule for a
@@ -251,20 +255,14 @@ impl Hydrograph {
         if self.speed.is_empty() {
             return 0.0;
         }
-        let mut momentum = 0.0;
-        for k in 1..self.time.len() {
-            let [from, to] = [self.time[k - 1], self.time[k]];
-            if time <= from {
-                break;
-            }
-            let whole = ((time - from) / (to - from)).min(1.0);
+        let of = |(k, length, share): (usize, f64, f64)| {
             let at = |share: f64| {
                 let between = |values: &[f64]| values[k - 1] + share * (values[k] - values[k - 1]);
                 between(&self.discharge) * between(&self.speed)
             };
-            momentum += (to - from) * whole / 6.0 * (at(0.0) + 4.0 * at(0.5 * whole) + at(whole));
-        }
-        momentum
+            length * share / 6.0 * (at(0.0) + 4.0 * at(0.5 * share) + at(share))
+        };
+        self.pieces(time).map(of).fold(0.0, |sum, part| sum + part)
     }
 
     /// The mean speed of what enters between two times \[m/s\]; 0 where nothing does.

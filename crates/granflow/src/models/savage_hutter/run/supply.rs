@@ -10,15 +10,16 @@ use std::collections::BTreeMap;
 /// A release that does not start with the run.
 pub(crate) struct Late {
     pub starts: Starts,
-    /// Its cells by column and row, with the volume per plan area \[m\].
-    pub cells: Vec<([usize; 2], f64)>,
+    /// Numbers of its cells, x fastest, with the volume per plan area \[m\].
+    pub cells: Vec<(usize, f64)>,
     /// It has started.
     pub came: bool,
 }
 
 /// A cell through which mass enters.
 pub(crate) struct Inlet {
-    pub cell: [usize; 2],
+    /// Its number, x fastest.
+    pub cell: usize,
     /// Its share of the discharge.
     pub share: f64,
     /// The direction in which the mass moves, of length 1.
@@ -75,8 +76,10 @@ impl Supply {
         S: Scheme<D, f64, State = Flow<D, f64>>,
         S::Ground: Bed<D, f64>,
     {
-        let time = simulation.time();
-        let before = simulation.poured();
+        if self.is_empty() {
+            return;
+        }
+        let (time, before) = (simulation.time(), simulation.poured());
         self.release(simulation, time);
         for inflow in &mut self.inflows {
             inflow.enter(simulation, time);
@@ -107,18 +110,19 @@ impl Supply {
         S: Scheme<D, f64, State = Flow<D, f64>>,
         S::Ground: Bed<D, f64>,
     {
-        let reached = |cell: &[usize; 2]| {
-            let here = simulation.cell(index(*cell));
+        let grid = *simulation.grid();
+        let reached = |cell: usize| {
+            let here = simulation.cell(grid.index(cell));
             !here.state.is_still() && here.ground.thickness(here.state.h) > HITS
         };
         let starts = |late: &&mut Late| {
             !late.came
                 && match late.starts {
                     Starts::At(at) => at <= time,
-                    Starts::Hit => late.cells.iter().any(|(cell, _)| reached(cell)),
+                    Starts::Hit => late.cells.iter().any(|(cell, _)| reached(*cell)),
                 }
         };
-        let mut volumes: BTreeMap<[usize; 2], Vec<f64>> = BTreeMap::new();
+        let mut volumes: BTreeMap<usize, Vec<f64>> = BTreeMap::new();
         for late in self.late.iter_mut().filter(starts) {
             late.came = true;
             for (cell, volume) in &late.cells {
@@ -129,8 +133,9 @@ impl Supply {
             .into_iter()
             .map(|(cell, mut volumes)| {
                 volumes.sort_by(f64::total_cmp);
-                let old = simulation.state(index(cell));
-                (index(cell), Flow { h: old.h + volumes.iter().sum::<f64>(), ..old })
+                let index = grid.index(cell);
+                let old = simulation.state(index);
+                (index, Flow { h: old.h + volumes.iter().sum::<f64>(), ..old })
             })
             .collect();
         give(simulation, states);
@@ -187,17 +192,19 @@ impl Inflow {
         if due <= 0.0 {
             return;
         }
-        let measure = simulation.grid().measure();
+        let grid = *simulation.grid();
+        let measure = grid.measure();
         let states: Vec<_> = self
             .inlets
             .iter()
             .map(|inlet| {
-                let here = simulation.cell(index(inlet.cell));
+                let index = grid.index(inlet.cell);
+                let here = simulation.cell(index);
                 let (old, h) = (here.state, due * inlet.share / measure);
                 let along: [f64; D] = std::array::from_fn(|k| inlet.direction[k]);
                 let horizontal = if speed > 0.0 { speed / here.ground.square(along).sqrt() } else { 0.0 };
                 let q = std::array::from_fn(|k| old.q[k] + h * horizontal * along[k]);
-                (index(inlet.cell), Flow { h: old.h + h, q })
+                (index, Flow { h: old.h + h, q })
             })
             .collect();
         let before = simulation.poured();
@@ -221,10 +228,10 @@ impl Inflow {
         let size = grid.size.into_iter().fold(f64::INFINITY, f64::min);
         let step = |inlet: &Inlet| {
             let rises = most(discharge) * inlet.share / grid.measure();
-            let pull = simulation.ground(index(inlet.cell)).gravity();
+            let here = simulation.cell(grid.index(inlet.cell));
+            let pull = here.ground.gravity();
             // The cell's own wave sqrt(2 g h) of what comes in the step, and its speed; on a dry bed the front must not be late.
             let by_wave = (CROSSED * size / (2.0 * pull * rises).sqrt()).powf(2.0 / 3.0);
-            let here = simulation.cell(index(inlet.cell));
             let dry = here.ground.thickness(here.state.h) < HITS;
             let by_front = if dry { CROSSED * HITS / rises } else { f64::INFINITY };
             by_wave.min(CROSSED * size / most(speed)).min(by_front)
@@ -264,9 +271,4 @@ where
             map[*place] = map[*place].max(value);
         }
     }
-}
-
-/// Column and row as the index of a cell.
-fn index<const D: usize>(cell: [usize; 2]) -> [usize; D] {
-    std::array::from_fn(|k| cell[k])
 }

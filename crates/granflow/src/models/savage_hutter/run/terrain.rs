@@ -55,10 +55,8 @@ pub(super) struct Loaded {
 impl Loaded {
     /// Let every release start with the run, so that one look shows all of them.
     pub(super) fn start_all(&mut self) {
-        let columns = self.terrain.bed.columns;
         for late in std::mem::take(&mut self.supply.late) {
-            let cells = late.cells.iter().map(|([column, row], volume)| (row * columns + column, *volume));
-            self.release = std::mem::take(&mut self.release).plus(cells.collect());
+            self.release = std::mem::take(&mut self.release).plus(late.cells.into_iter().collect());
         }
     }
 }
@@ -78,11 +76,10 @@ pub(super) fn simulate(
         size: [bed.cell; 2],
         boundary: [[Boundary::Absorbing; 2]; 2],
     };
-    let number = |[column, row]: [usize; 2]| row * columns + column;
-    let cells = |late: &Late| late.cells.iter().map(|(cell, volume)| (number(*cell), *volume)).collect();
-    let all = supply.late.iter().fold(release.clone(), |all, late| all.plus(cells(late)));
+    let all =
+        supply.late.iter().fold(release.clone(), |all, late| all.plus(late.cells.iter().copied().collect()));
     let thickness = all.map(|cell, volume| volume * terrain.fit(bed.place(cell)).cosine());
-    let inlets = supply.inflows.iter().flat_map(|inflow| &inflow.inlets).map(|inlet| number(inlet.cell));
+    let inlets = supply.inflows.iter().flat_map(|inflow| &inflow.inlets).map(|inlet| inlet.cell);
     // The grounds hold the elevation from here on.
     let domain = TerrainDomain {
         raster: Arc::new(bed.with_values(Vec::new())),
@@ -341,9 +338,7 @@ fn add(loaded: &mut Loaded, one: &Release, crs: Option<&Crs>) -> Result<(), Star
     if one.starts == Starts::At(0.0) {
         loaded.release = std::mem::take(&mut loaded.release).plus(volume);
     } else {
-        let cells = volume.iter().filter(|(_, volume)| *volume > 0.0);
-        let cells = cells.map(|(cell, volume)| (bed.place(cell), volume)).collect();
-        loaded.supply.late.push(Late { starts: one.starts, cells, came: false });
+        loaded.supply.late.push(Late { starts: one.starts, cells: volume.iter().collect(), came: false });
     }
     Ok(())
 }
@@ -371,12 +366,12 @@ fn inflow(
     };
     let moves = one.hydrograph.speed.iter().any(|speed| *speed > 0.0);
     let inlet = |(cell, share): (usize, f64)| {
-        let cell = bed.place(cell);
-        let [down_x, down_y] = loaded.terrain.fit(cell).gradient.map(|slope| -slope);
+        let [column, row] = bed.place(cell);
+        let [down_x, down_y] = loaded.terrain.fit([column, row]).gradient.map(|slope| -slope);
         let [x, y] = one.direction.unwrap_or([down_x, down_y]);
         let length = x.hypot(y);
         if moves && length < LEVEL {
-            let place = format!("({}, {})", bed.x(cell[0]), bed.y(cell[1]));
+            let place = format!("({}, {})", bed.x(column), bed.y(row));
             let message =
                 format!("the bed is level at {place}: there is no way down for a mass with a speed");
             return Err(run.fault(key, message, "say where it goes, as in direction = [1, 0]").into());
