@@ -4,7 +4,9 @@
 //! [`ground::Terrain`]). The unknowns are [`Flow`]; what is fixed in a cell is a [`ground::Bed`].
 
 pub mod balanced;
+pub mod earth_pressure;
 pub mod energy_stable;
+pub mod erosion;
 #[cfg(feature = "std")]
 pub mod exact;
 

@@ -1,6 +1,10 @@
 //! Every friction law through the schemes, in SI units: uniform flow on a slope at its exact speed, a slab that stops when its
 //! ordinary differential equation says so, rest up to the static bound and no farther.
 
+#[path = "support/asc.rs"]
+mod asc;
+#[path = "laws/earth_pressure.rs"]
+mod earth_pressure;
 #[path = "laws/zones.rs"]
 mod zones;
 

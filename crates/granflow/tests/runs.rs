@@ -1,7 +1,13 @@
 //! A run one can hold: memory, views, save and restore, frames, all without a disk.
 
+#[path = "support/asc.rs"]
+mod asc;
+#[path = "runs/erosion.rs"]
+mod erosion;
 #[path = "runs/supply.rs"]
 mod supply;
+#[path = "runs/valley.rs"]
+mod valley;
 
 use granflow::Case;
 use granflow::build::{Avalanche, Grid, Sandpile, Table};

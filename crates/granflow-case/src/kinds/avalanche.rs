@@ -7,7 +7,7 @@ mod friction;
 mod scheme;
 mod time;
 
-pub use friction::{AvalancheSize, ByElevation, FOREST, InSpace, Material, Place, Range};
+pub use friction::{AvalancheSize, ByElevation, FOREST, InSpace, LAYER, Material, Place, Range};
 pub use scheme::{Method, SchemeName};
 
 pub(super) use scheme::NAMES as SCHEMES;

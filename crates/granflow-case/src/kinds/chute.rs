@@ -198,6 +198,7 @@ impl Written for Words {
         self.check_published(look, scheme.name)?;
         let ends = time.check(look, scheme.name, TRICKLE)?;
         self.check_rest(look, &ends, sides[0], &columns)?;
+        check_pressure(look, &material, &sides)?;
         let written = output.check(look, &ends, &WRITTEN)?;
         if output.durations.is_some_and(|durations| durations.pressure.is_some()) {
             let message = "there is no pressure on a chute, only on [terrain]";
@@ -292,6 +293,17 @@ impl OnChute {
         let columns = self.slope.clone().unwrap_or_default().check(look, axis)?;
         Ok((material, columns))
     }
+}
+
+/// Passive earth pressure is found from end to end of a line.
+fn check_pressure(look: &Look, material: &Material, sides: &[[Side; 2]; 2]) -> Result<(), CaseError> {
+    let passive = material.passive_coefficient > material.pressure_coefficient;
+    if passive && sides.iter().flatten().any(|side| *side == Side::Periodic) {
+        let message = "active and passive earth pressure does not go round periodic ends";
+        let cure = "use open ends or walls, or earth_pressure = \"kaland\"";
+        return Err(look.fault("grid.boundary", message, cure));
+    }
+    Ok(())
 }
 
 impl Initial {

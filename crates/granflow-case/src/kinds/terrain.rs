@@ -15,12 +15,14 @@ use crate::precision::Precision;
 use crate::source::Missing;
 use crate::watched::{self, Gauge, SectionWords};
 
+mod entrainment;
 mod inflow;
 mod release;
 mod words;
 
 use words::Elevation;
 
+pub use entrainment::Entrainment;
 pub use inflow::{Hydrograph, Inflow, Over};
 pub use release::{Attribute, Cap, Extent, Measured, Release, Starts, Thickness};
 
@@ -53,6 +55,10 @@ pub struct Plan {
     pub releases: Vec<Release>,
     /// What enters in the course of the run.
     pub inflows: Vec<Inflow>,
+    /// A layer on the bed that the flow picks up.
+    pub entrainment: Option<Entrainment>,
+    /// The pressure \[Pa\] at which the forest breaks, if it does.
+    pub forest_breaks_at: Option<f64>,
     /// What flows, and what holds it back.
     pub material: Material,
     /// The scheme.
@@ -93,6 +99,9 @@ pub(crate) struct Words {
     /// What enters in the course of the run.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     inflow: Vec<inflow::Words>,
+    /// A layer on the bed that the flow picks up.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    entrainment: Option<entrainment::Words>,
     /// The method.
     #[serde(default)]
     scheme: avalanche::Scheme,
@@ -118,12 +127,15 @@ struct OnTerrain {
     density: f64,
     /// The friction law at the bed.
     friction: Friction,
-    /// The earth-pressure coefficient k: isotropic.
+    /// The earth-pressure coefficient k.
     #[serde(default)]
     earth_pressure: EarthPressure,
     /// Drag of a forest or of other things that stand on the bed and are not overflown, in 1/m: it takes drag |V|^2.
     #[serde(skip_serializing_if = "Option::is_none")]
     forest: Option<Parameter>,
+    /// Dynamic pressure in kPa at which the forest of a cell breaks (default: it stands).
+    #[serde(skip_serializing_if = "Option::is_none")]
+    forest_breaks_at: Option<f64>,
     /// Gravity g (default 9.81 m/s^2).
     #[serde(skip_serializing_if = "Option::is_none")]
     gravity: Option<f64>,
@@ -143,7 +155,10 @@ impl Written for Words {
     fn check(&self, look: &Look) -> Result<(RunPlan, Kind), CaseError> {
         let Self { title, terrain, material, release, inflow, time, output, .. } = self;
         let scheme = &self.scheme.or(SchemeName::EnergyStable2);
+        let forest_breaks_at = material.breaks_at(look)?;
         let material = material.check(look)?;
+        let entrainment =
+            self.entrainment.as_ref().map(|one| one.check(look, material.density)).transpose()?;
         let stepping = scheme.check(look)?;
         material.check_scheme(look, scheme.name)?;
         let named = on_terrain(look, scheme.name)?;
@@ -180,6 +195,8 @@ impl Written for Words {
             curvature,
             releases,
             inflows,
+            entrainment,
+            forest_breaks_at,
             material,
             scheme: scheme.method(named, FILM),
         });
@@ -189,18 +206,25 @@ impl Written for Words {
 
 impl OnTerrain {
     fn check(&self, look: &Look) -> Result<Material, CaseError> {
-        if self.earth_pressure != EarthPressure::Isotropic {
-            return Err(look.fault(
-                "material.earth_pressure",
-                "on terrain the earth pressure is isotropic in this version",
-                "remove it, or write earth_pressure = \"isotropic\"",
-            ));
-        }
         look.usual("material.gravity", self.gravity)?;
         look.usual("material.density", Some(self.density))?;
         let gravity = self.gravity.unwrap_or(avalanche::GRAVITY);
         let material = self.friction.material(look, self.earth_pressure, gravity, self.density)?;
         material.in_forest(look, self.forest.as_ref())
+    }
+
+    /// The pressure \[Pa\] at which the forest breaks, if it does.
+    fn breaks_at(&self, look: &Look) -> Result<Option<f64>, CaseError> {
+        let key = "material.forest_breaks_at";
+        look.usual(key, self.forest_breaks_at)?;
+        if self.forest_breaks_at.is_some() && self.forest.is_none() {
+            return Err(look.fault(
+                key,
+                "there is no forest that could break",
+                "add forest = 0.02 (1/m), or remove it",
+            ));
+        }
+        Ok(self.forest_breaks_at.map(|kilopascal| 1000.0 * kilopascal))
     }
 }
 
@@ -231,11 +255,22 @@ const WRITTEN: Defaults = Defaults {
 };
 
 /// Keys that not every model has.
-const KEYS: [&str; 12] = {
+const KEYS: [&str; 13] = {
     let [material, film, rest_speed, trickle, stop, gauge, section, series, durations] = avalanche::KEYS;
     [
-        material, film, rest_speed, trickle, stop, gauge, section, series, durations, "terrain", "release",
+        material,
+        film,
+        rest_speed,
+        trickle,
+        stop,
+        gauge,
+        section,
+        series,
+        durations,
+        "terrain",
+        "release",
         "inflow",
+        "entrainment",
     ]
 };
 

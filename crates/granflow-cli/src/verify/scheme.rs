@@ -255,6 +255,7 @@ pub fn terrain<const D: usize>(
                 cos,
                 curvature: bent.map(|row| row.map(|b| cos * b)),
                 gravity: GRAVITY,
+                pressure: GRAVITY,
             }
         })
     };

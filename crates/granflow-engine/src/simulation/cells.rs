@@ -3,6 +3,8 @@
 use super::state::Simulation;
 use crate::boundary;
 use crate::parallel;
+use crate::tiles::Tile;
+use granflow_model::real::per_axis;
 use granflow_model::scheme::{Cell, Diagnostics, Scheme, Spacing, Stencil};
 
 /// The cells around one, outside a sweep.
@@ -71,6 +73,25 @@ impl<const D: usize, S: Scheme<D, f64>> Simulation<D, S> {
     /// What is made of every cell, x fastest.
     pub fn collect<T>(&self, value: impl Fn(&Cell<S::State, S::Ground, S::Forcing>) -> T) -> Vec<T> {
         (0..self.grid.count()).map(|number| value(&self.cell(self.grid.index(number)))).collect()
+    }
+    /// What is made of the moving cells for which it is something, tile by tile: of tiles in which nothing moves no cell is looked at.
+    pub fn of_moving<T: Send>(
+        &self,
+        value: impl Fn([usize; D], &Cell<S::State, S::Ground, S::Forcing>) -> Option<T> + Sync,
+    ) -> Vec<T> {
+        let moving: Vec<usize> = (0..self.tiles.len()).filter(|tile| self.stats[*tile].speed > 0.0).collect();
+        let of_tile = |number: usize| {
+            let Tile { columns, rows, .. } = self.tiles[moving[number]];
+            let mut values = Vec::new();
+            for j in rows[0]..rows[1] {
+                let place = self.layout.place(columns[0] as isize, j as isize);
+                for (i, cell) in (columns[0]..).zip(self.row(place, columns[1] - columns[0])) {
+                    values.extend(value(per_axis!(k => if k == 0 { i } else { j }), &cell));
+                }
+            }
+            values
+        };
+        parallel::map(moving.len(), of_tile).into_iter().flatten().collect()
     }
     /// A value of as many cells as `values` holds, from number `from` on, x fastest, where every row is `columns` long
     /// ([`Layout::by_rows`](crate::grid::Layout::by_rows)).

@@ -1,5 +1,6 @@
 //! What acts on the cells from outside, and which tiles its changes wake.
 
+use super::change::bits;
 use super::state::Simulation;
 use crate::boundary;
 use crate::disjoint::DisjointSlice;
@@ -18,6 +19,34 @@ impl<const D: usize, S: Scheme<D, f64>> Simulation<D, S> {
             return;
         }
         self.replace_forcings(change);
+        self.forcings_changed();
+    }
+
+    /// The same for some cells.
+    ///
+    /// # Panics
+    /// If a cell is outside the grid.
+    pub fn apply_to(
+        &mut self,
+        cells: impl IntoIterator<Item = [usize; D]>,
+        change: impl Fn(S::Forcing) -> S::Forcing,
+    ) {
+        self.forced.fill(false);
+        for index in cells {
+            let place = self.place(index);
+            let old: S::Forcing = self.forcings.get(place);
+            let new = change(old);
+            if bits(new) != bits(old) {
+                self.forcings.set(place, new);
+                let number = self.tile_of(index);
+                self.forced[number] = true;
+            }
+        }
+        self.forcings_changed();
+    }
+
+    /// Find again what follows from the forcing of the tiles in which it changed.
+    fn forcings_changed(&mut self) {
         if !self.forced.contains(&true) {
             return;
         }
@@ -31,7 +60,9 @@ impl<const D: usize, S: Scheme<D, f64>> Simulation<D, S> {
                 self.active.push(number as u32);
             }
         }
-        self.find_uniform();
+        let forced = std::mem::take(&mut self.forced);
+        self.find_uniform(&forced);
+        self.forced = forced;
         self.supply = self.supplied();
     }
 
@@ -63,15 +94,15 @@ impl<const D: usize, S: Scheme<D, f64>> Simulation<D, S> {
         });
     }
 
-    /// Find out again which tiles see one ground and one forcing only: those that see a changed one.
-    fn find_uniform(&mut self) {
+    /// Find out again which tiles see one ground and one forcing only: those that see a tile in which one `changed`.
+    pub(super) fn find_uniform(&mut self, changed: &[bool]) {
         let (across, up) = (self.across, self.tiles.len() / self.across);
         // There a tile also sees the other end of the grid.
         let periodic = self.grid.boundary.iter().any(|ends| ends.contains(&Boundary::Periodic));
         for number in 0..self.tiles.len() {
             let (x, y) = (number % across, number / across);
             let near = |k: usize, count: usize| k.saturating_sub(1)..(k + 2).min(count);
-            let sees = near(y, up).any(|v| near(x, across).any(|u| self.forced[v * across + u]));
+            let sees = near(y, up).any(|v| near(x, across).any(|u| changed[v * across + u]));
             if sees || periodic {
                 let Tile { columns, rows, .. } = self.tiles[number];
                 self.tiles[number].uniform = self.is_uniform([columns, rows]);

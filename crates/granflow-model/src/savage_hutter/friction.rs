@@ -181,6 +181,12 @@ impl<R: Real> Parameters<R> {
         self.of_law[index / HALF][index % HALF]
     }
 
+    /// The same where nothing stands on the bed.
+    #[must_use]
+    pub fn on_bare_bed(self) -> Self {
+        Parameters { drag: R::zero(), ..self }
+    }
+
     /// The same with another parameter `index` of the law.
     #[must_use]
     pub fn with(mut self, index: usize, number: R) -> Self {

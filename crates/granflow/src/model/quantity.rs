@@ -81,6 +81,8 @@ pub struct Quantity {
     pub exact: bool,
     /// Does a fixed quantity stand among the maps of csv and vtk files too?
     pub tabulated: bool,
+    /// Is it there only if the case asks for it?
+    pub on_demand: bool,
 }
 
 impl Quantity {
@@ -90,8 +92,8 @@ impl Quantity {
         long_name: &'static str,
         units: [&'static str; 2],
     ) -> Quantity {
-        let (maximum, exact, tabulated) = (false, false, false);
-        Quantity { name, long_name, units, at: At::Cells, kind, maximum, exact, tabulated }
+        let (maximum, exact, tabulated, on_demand) = (false, false, false, false);
+        Quantity { name, long_name, units, at: At::Cells, kind, maximum, exact, tabulated, on_demand }
     }
 
     /// A series in the cells; `units` are those in the papers' scaling and in SI.
@@ -122,6 +124,12 @@ impl Quantity {
     #[must_use]
     pub const fn with_maximum(self) -> Quantity {
         Quantity { maximum: true, ..self }
+    }
+
+    /// The same with [`Quantity::on_demand`].
+    #[must_use]
+    pub const fn on_demand(self) -> Quantity {
+        Quantity { on_demand: true, ..self }
     }
 
     /// The same with [`Quantity::exact`].

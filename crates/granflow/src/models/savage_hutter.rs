@@ -62,19 +62,22 @@ pub static MODEL: Model = Model {
             "time during which the thickness exceeded output.durations.thickness",
             ["1", "s"],
         )
-        .with_maximum(),
+        .with_maximum()
+        .on_demand(),
         Quantity::map(
             "duration_speed",
             "time during which the speed exceeded output.durations.speed, while thicker than the threshold",
             ["1", "s"],
         )
-        .with_maximum(),
+        .with_maximum()
+        .on_demand(),
         Quantity::map(
             "duration_pressure",
             "time during which the pressure exceeded output.durations.pressure, while thicker than the threshold",
             ["1", "s"],
         )
-        .with_maximum(),
+        .with_maximum()
+        .on_demand(),
         Quantity::map(
             "deposit",
             "thickness normal to the bed at the end, where thicker than the threshold",
@@ -87,6 +90,10 @@ pub static MODEL: Model = Model {
             ["1", "1"],
         )
         .with_maximum(),
+        Quantity::map("eroded_depth", "depth of the layer that was picked up, normal to the bed", ["1", "m"])
+            .with_maximum()
+        .on_demand(),
+        Quantity::map("forest_broken", "time at which the forest broke", ["1", "s"]).on_demand(),
     ],
     words: Words { wet: "wet cells", fastest: "speed" },
     scheme_title: |scheme| scheme.replace("verfahren_", "Verfahren "),

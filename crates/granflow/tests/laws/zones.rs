@@ -1,8 +1,8 @@
 //! Parameters of friction that differ from place to place on a mountain.
 
+use crate::asc;
 use granflow::Case;
 use granflow::run::Run;
-use std::fmt::Write;
 use std::fs;
 use std::path::Path;
 
@@ -10,18 +10,9 @@ const COLUMNS: usize = 60;
 const ROWS: usize = 30;
 const CELL: f64 = 5.0;
 
-/// An ASCII grid of the mountain's cells; columns from the west, rows from the south.
+/// A raster of the mountain's cells, by column and row from the south west.
 fn write_grid(path: &Path, value: impl Fn(usize, usize) -> f64) {
-    let mut text = format!(
-        "ncols {COLUMNS}\nnrows {ROWS}\nxllcorner 1000\nyllcorner 2000\ncellsize {CELL}\nNODATA_value -9999\n"
-    );
-    for j in (0..ROWS).rev() {
-        for i in 0..COLUMNS {
-            write!(text, "{:?} ", value(i, j)).unwrap();
-        }
-        text.push('\n');
-    }
-    fs::write(path, text).unwrap();
+    asc::write_grid(path, [COLUMNS, ROWS], [1000.0, 2000.0], CELL, value);
 }
 
 /// Rectangles [west, south, east, north] \[m\] with an attribute `mu`.

@@ -1,69 +1,11 @@
 //! Mass that comes in the course of a run: late and secondary releases, inflows by hydrographs.
 
+use super::valley::{CELL, FIRST, number, start, steps, thickness, try_start, valley, write_grid};
 use granflow::Case;
 use granflow::case::Frames;
 use granflow::run::{Ends, Run, Until, drive};
 use granflow::sinks::Memory;
-use std::fmt::Write;
 use std::fs;
-use std::path::Path;
-
-const CELL: f64 = 5.0;
-
-/// An ASCII grid; columns from the west, rows from the south.
-fn write_grid(path: &Path, [columns, rows]: [usize; 2], value: impl Fn(f64, f64) -> f64) {
-    let mut text = format!(
-        "ncols {columns}\nnrows {rows}\nxllcorner 0\nyllcorner 0\ncellsize {CELL}\nNODATA_value -9999\n"
-    );
-    for j in (0..rows).rev() {
-        for i in 0..columns {
-            write!(text, "{:?} ", value((i as f64 + 0.5) * CELL, (j as f64 + 0.5) * CELL)).unwrap();
-        }
-        text.push('\n');
-    }
-    fs::write(path, text).unwrap();
-}
-
-/// A valley: steep, then level, with banks.
-fn valley() -> tempfile::TempDir {
-    let folder = tempfile::tempdir().unwrap();
-    write_grid(&folder.path().join("dem.asc"), [70, 24], |x, y| {
-        500.0 - 0.6 * x.min(180.0) - 0.05 * (x - 180.0).max(0.0) + 0.003 * (y - 60.0).powi(2)
-    });
-    folder
-}
-
-const FIRST: &str = "[[release]]\ncap = { height = 3.0, centre = [40.0, 60.0], radius = 25.0 }\n";
-
-fn start(folder: &Path, parts: &str, time: &str) -> Box<dyn Run> {
-    try_start(folder, parts, time).unwrap()
-}
-
-fn try_start(folder: &Path, parts: &str, time: &str) -> Result<Box<dyn Run>, String> {
-    let path = folder.join("case.toml");
-    let text = format!(
-        "[terrain]\ndem = \"dem.asc\"\ncrs = \"EPSG:31287\"\n[material]\ndensity = 200.0\n\
-         friction.coulomb = {{ mu = 0.3 }}\n{parts}[time]\n{time}\n"
-    );
-    fs::write(&path, text).unwrap();
-    let said = |error: granflow::case::CaseError| format!("{error}");
-    let checked = Case::read(&path).map_err(said)?.check().map_err(said)?;
-    checked.start().map_err(|error| error.to_string())
-}
-
-fn thickness(run: &dyn Run) -> Vec<u64> {
-    run.field("thickness").unwrap().iter().map(f64::to_bits).collect()
-}
-
-fn number(run: &dyn Run, name: &str) -> Option<f64> {
-    run.numbers().into_iter().find(|(key, _)| key == name).map(|(_, value)| value)
-}
-
-fn steps(run: &mut dyn Run, count: usize) {
-    for _ in 0..count {
-        run.step(1e9).unwrap();
-    }
-}
 
 #[test]
 fn a_hydrograph_brings_its_integral_whatever_the_steps() {

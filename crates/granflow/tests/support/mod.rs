@@ -51,7 +51,14 @@ pub struct Surface<const D: usize> {
 /// The ground of a bed at one point.
 pub fn ground<const D: usize>(Surface { z, slope, bent }: Surface<D>) -> Terrain<D, f64> {
     let cos = 1.0 / (1.0 + slope.iter().map(|s| s * s).sum::<f64>()).sqrt();
-    Terrain { level: z, slope, cos, curvature: bent.map(|row| row.map(|b| cos * b)), gravity: GRAVITY }
+    Terrain {
+        level: z,
+        slope,
+        cos,
+        curvature: bent.map(|row| row.map(|b| cos * b)),
+        gravity: GRAVITY,
+        pressure: GRAVITY,
+    }
 }
 
 /// The grounds of a grid over `bed`, which answers `None` outside the data; slopes are rounded as a grid keeps them.

@@ -2,6 +2,7 @@
 
 use std::f64::consts::FRAC_PI_2;
 
+use granflow_model::savage_hutter::earth_pressure;
 use granflow_model::savage_hutter::friction::{AnyLaw, Law, SamosAt};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -35,8 +36,10 @@ pub struct Material {
     pub in_space: Vec<InSpace>,
     /// mu is that of the released volume ([`AvalancheSize::of`]).
     pub by_volume: bool,
-    /// The earth-pressure coefficient k.
+    /// The earth-pressure coefficient k; of active and passive pressure that of stretching.
     pub pressure_coefficient: f64,
+    /// That of compression.
+    pub passive_coefficient: f64,
     /// Gravity g: m/s^2 on terrain, 1 where times are scaled by sqrt(L/g).
     pub gravity: f64,
     /// Bulk density rho, kg/m^3 on terrain.
@@ -44,14 +47,19 @@ pub struct Material {
 }
 
 /// The earth-pressure coefficient k in beta = epsilon k cos(zeta).
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, JsonSchema)]
-#[serde(rename_all = "snake_case")]
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case", deny_unknown_fields)]
 pub(crate) enum EarthPressure {
     /// k = 1.
     #[default]
     Isotropic,
     /// k = 1 + 2 tan(delta)^2, internal friction equal to bed friction (Kaland & Struckmeier 2007).
     Kaland,
+    /// k_act where the mass is stretched along an axis, k_pas where it is compressed (Savage & Hutter 1989).
+    ActivePassive {
+        /// The angle of internal friction phi, not below that of the bed.
+        internal: Angle,
+    },
 }
 
 impl Material {
@@ -72,6 +80,19 @@ impl Material {
 
     /// A law that is computed cell by cell needs a scheme that does so.
     pub(crate) fn check_scheme(&self, look: &Look, scheme: SchemeName) -> Result<(), CaseError> {
+        let published = !matches!(
+            scheme,
+            SchemeName::EnergyStable
+                | SchemeName::EnergyStable2
+                | SchemeName::Balanced
+                | SchemeName::Balanced2
+        );
+        if published && self.passive_coefficient != self.pressure_coefficient {
+            let message = format!("{} knows one earth-pressure coefficient only", scheme.as_str());
+            let cure =
+                "use energy_stable_2, energy_stable, balanced or balanced_2, or earth_pressure = \"kaland\"";
+            return Err(look.fault(PRESSURE, message, cure));
+        }
         if self.law_in_loops().is_some()
             || matches!(scheme, SchemeName::EnergyStable | SchemeName::EnergyStable2)
         {
@@ -89,29 +110,59 @@ impl Material {
 /// The number of [`InSpace::index`] that is no parameter of the law but the drag of a forest.
 pub const FOREST: usize = 6;
 
+/// The number of [`InSpace::index`] that is the thickness of an erodible layer.
+pub const LAYER: usize = 7;
+
 impl Material {
     /// The same in a forest with this drag, if there is one.
     pub(crate) fn in_forest(mut self, look: &Look, drag: Option<&Parameter>) -> Result<Material, CaseError> {
         let (Some(drag), key, range) = (drag, "material.forest", Range::NotNegative) else { return Ok(self) };
-        let place = match drag.place(look, key, range)? {
-            Some(place) => place,
-            None => {
-                let number = drag.usual();
-                look.number(key, number, |v| range.fits(v, 0.0), &range.allowed())?;
-                Place::Everywhere(number)
-            }
-        };
+        let place = drag.in_place(look, key, range)?;
         self.in_space.push(InSpace { index: FOREST, key: key.to_owned(), place, range, per: 1.0 });
         Ok(self)
     }
 }
 
+/// The key of the earth pressure.
+const PRESSURE: &str = "material.earth_pressure";
+
 impl EarthPressure {
-    /// The coefficient k under a friction coefficient mu.
-    fn coefficient(self, mu: f64) -> f64 {
+    /// k of stretching and of compression under the friction coefficient `mu` of a law, if it has one for all cells.
+    fn coefficients(self, look: &Look, friction: &str, mu: Option<f64>) -> Result<[f64; 2], CaseError> {
+        let needed = || {
+            mu.ok_or_else(|| {
+                let message = format!(
+                    "`{}` needs the one friction angle of a law, and {friction} has none here",
+                    self.name()
+                );
+                look.fault(PRESSURE, message, "write earth_pressure = \"isotropic\"")
+            })
+        };
         match self {
-            Self::Isotropic => 1.0,
-            Self::Kaland => 1.0 + 2.0 * mu.powi(2),
+            Self::Isotropic => Ok([1.0; 2]),
+            Self::Kaland => needed().map(|mu| [1.0 + 2.0 * mu.powi(2); 2]),
+            Self::ActivePassive { internal } => {
+                let (mu, key) = (needed()?, format!("{PRESSURE}.active_passive.internal"));
+                let allowed = "an angle from 0 to below 90 deg (1.5708 rad)";
+                look.number(&key, internal.radians(), |v| (0.0..FRAC_PI_2).contains(&v), allowed)
+                    .map_err(|error| error.help(RADIANS))?;
+                earth_pressure::coefficients(internal.radians().tan(), mu).ok_or_else(|| {
+                    let [internal, bed] = [internal.radians(), mu.atan()].map(f64::to_degrees);
+                    let message = format!(
+                        "the angle of internal friction, {internal:.3} deg, is below that of the bed, {bed:.3} deg"
+                    );
+                    look.fault(&key, message, "give one that is not, for instance internal = \"35 deg\"")
+                })
+            }
+        }
+    }
+
+    /// As a case writes it.
+    fn name(self) -> &'static str {
+        match self {
+            Self::Isotropic => "isotropic",
+            Self::Kaland => "kaland",
+            Self::ActivePassive { .. } => "active_passive",
         }
     }
 }
@@ -152,16 +203,10 @@ impl Friction {
             of_law.push(value.usual() / per);
         }
         let mu = self.has_mu().then_some(first);
-        if pressure == EarthPressure::Kaland && mu.is_none() {
-            let message = format!("`kaland` needs the friction angle of a law, and {} has none", self.name());
-            return Err(look.fault(
-                "material.earth_pressure",
-                message,
-                "write earth_pressure = \"isotropic\"",
-            ));
-        }
-        let (law, pressure_coefficient) = (self.law(&of_law), pressure.coefficient(mu.unwrap_or(0.0)));
         let by_volume = self.by_volume(look)?;
+        let one_mu = mu.filter(|_| !by_volume && in_space.iter().all(|parameter| parameter.index != 0));
+        let [pressure_coefficient, passive_coefficient] = pressure.coefficients(look, self.name(), one_mu)?;
+        let law = self.law(&of_law);
         Ok(Material {
             friction: self.name(),
             mu,
@@ -169,6 +214,7 @@ impl Friction {
             in_space,
             by_volume,
             pressure_coefficient,
+            passive_coefficient,
             gravity,
             density,
         })

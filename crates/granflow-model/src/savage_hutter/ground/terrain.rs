@@ -7,8 +7,8 @@ use crate::scheme::{Components, components};
 /// A cell of a terrain z = b(x, y), SI units (Bouchut & Westdickenberg, Commun. Math. Sci. 2, 2004, for the true
 /// horizontal velocity w and the volume per plan area H = h/c).
 ///
-/// psi = g (b + c^2 H), M = I - s s^T, s = c grad b, beta = g c^2 (1 - s_axis^2). A cell outside the data has c = 0. A grid
-/// keeps all but b and g in single precision, 6e-8 of a slope; for the metric, the friction and the weight of a cell, and
+/// psi = g (b + k c^2 H), M = I - s s^T, s = c grad b, beta = g k c^2 (1 - s_axis^2), k = 1 if nobody says another
+/// ([`Terrain::with_pressure`]). A cell outside the data has c = 0. A grid keeps all but b, g and g k in single precision, 6e-8 of a slope; for the metric, the friction and the weight of a cell, and
 /// wherever rest is decided, c follows from its slope as it is kept ([`Bed::exact`]); differences between cells and the turn
 /// of a velocity into the next plane are right to 1e-7.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -23,6 +23,8 @@ pub struct Terrain<const D: usize, R> {
     pub curvature: [[R; D]; D],
     /// g \[m/s^2\], the same in all cells, also outside the data.
     pub gravity: R,
+    /// g k \[m/s^2\], k the earth-pressure coefficient; the same in all cells.
+    pub pressure: R,
 }
 
 impl<const D: usize, R: Real> Terrain<D, R> {
@@ -30,7 +32,14 @@ impl<const D: usize, R: Real> Terrain<D, R> {
     #[inline(always)]
     pub fn nothing(gravity: R) -> Self {
         let zero = R::zero();
-        Terrain { level: zero, slope: [zero; D], cos: zero, curvature: [[zero; D]; D], gravity }
+        Terrain {
+            level: zero,
+            slope: [zero; D],
+            cos: zero,
+            curvature: [[zero; D]; D],
+            gravity,
+            pressure: gravity,
+        }
     }
     /// The part in which the second derivative along axes i and j is kept.
     #[inline(always)]
@@ -50,18 +59,25 @@ impl Terrain<2, f64> {
     /// derivatives `hessian` = \[b_xx, b_xy, b_yy\] \[1/m\].
     pub fn of(level: f64, gradient: [f64; 2], cos: f64, hessian: [f64; 3], gravity: f64) -> Self {
         let [xx, xy, yy] = hessian.map(|second| cos * second);
-        Terrain { level, slope: gradient, cos, curvature: [[xx, xy], [xy, yy]], gravity }
+        Terrain { level, slope: gradient, cos, curvature: [[xx, xy], [xy, yy]], gravity, pressure: gravity }
+    }
+
+    /// The same under the earth-pressure coefficient `k`.
+    #[must_use]
+    pub fn with_pressure(self, k: f64) -> Self {
+        Terrain { pressure: self.gravity * k, ..self }
     }
 }
 
-/// By hand: the curvature is kept as a triangle, and all but the level and gravity in single precision.
+/// By hand: the curvature is kept as a triangle, and all but the level and what is the same everywhere in single precision.
 impl<const D: usize, R: Real> Components<R> for Terrain<D, R> {
-    const COUNT: usize = 3 + D + D * (D + 1) / 2;
-    const UNIFORM_MASK: u32 = 1 << (Self::COUNT - 1);
-    const F32_MASK: u32 = Self::UNIFORM_MASK - 2;
+    const COUNT: usize = 4 + D + D * (D + 1) / 2;
+    const UNIFORM_MASK: u32 = 0b11 << (Self::COUNT - 2);
+    const F32_MASK: u32 = (1 << (Self::COUNT - 2)) - 2;
     #[inline(always)]
     fn load(part: impl Fn(usize) -> R) -> Self {
-        let mut cell = Terrain { level: part(0), cos: part(1), ..Terrain::nothing(part(Self::COUNT - 1)) };
+        let (gravity, pressure) = (part(Self::COUNT - 2), part(Self::COUNT - 1));
+        let mut cell = Terrain { level: part(0), cos: part(1), pressure, ..Terrain::nothing(gravity) };
         for_axis!(i in D => {
             cell.slope[i] = part(2 + i);
             for_axis!(j in D => {
@@ -82,7 +98,8 @@ impl<const D: usize, R: Real> Components<R> for Terrain<D, R> {
                 }
             });
         });
-        put(Self::COUNT - 1, self.gravity);
+        put(Self::COUNT - 2, self.gravity);
+        put(Self::COUNT - 1, self.pressure);
     }
 }
 
@@ -143,14 +160,14 @@ impl<const D: usize, R: Real> Bed<D, R> for Terrain<D, R> {
     fn potential(surface: &R) -> R {
         *surface
     }
-    /// g c^2 \[m/s^2\]: pressure at the bed of a column of H = 1, beta across the slope.
+    /// g k c^2 \[m/s^2\]: pressure at the bed of a column of H = 1, beta across the slope.
     #[inline(always)]
     fn head(&self) -> R {
-        self.gravity * (self.cos * self.cos)
+        self.pressure * (self.cos * self.cos)
     }
     #[inline(always)]
     fn per_head(&self) -> R {
-        let per = (R::splat(1.0) + dot(self.slope, self.slope)) * (R::splat(1.0) / self.gravity);
+        let per = (R::splat(1.0) + dot(self.slope, self.slope)) * (R::splat(1.0) / self.pressure);
         R::select(self.is_nodata(), R::zero(), per)
     }
     #[inline(always)]

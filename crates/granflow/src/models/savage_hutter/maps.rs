@@ -159,7 +159,7 @@ impl Layer<'_> {
 pub(super) fn figures<'a>(view: &'a View<'a>, terrain: &'a TerrainDomain) -> Vec<Drawing<'a>> {
     let Some(peak) = view.map("peak_thickness") else { return Vec::new() };
     let ground = Arc::new(Background { path: path(view, terrain), ..Background::of(view, terrain) });
-    let plan: [(&'static str, &'static str, &'static str, Colours); 8] = [
+    let plan: [(&'static str, &'static str, &'static str, Colours); 10] = [
         ("peak_thickness", "greatest thickness", "m", Colours::Thickness),
         ("deposit", "deposit", "m", Colours::Thickness),
         ("peak_speed", "greatest speed", "m/s", Colours::Speed),
@@ -168,6 +168,8 @@ pub(super) fn figures<'a>(view: &'a View<'a>, terrain: &'a TerrainDomain) -> Vec
         ("duration_thickness", "time above the thickness", "s", Colours::Viridis),
         ("duration_speed", "time above the speed", "s", Colours::Viridis),
         ("duration_pressure", "time above the pressure", "s", Colours::Viridis),
+        ("eroded_depth", "eroded depth", "m", Colours::Thickness),
+        ("forest_broken", "time at which the forest broke", "s", Colours::Viridis),
     ];
     let layers = plan.into_iter().filter_map(|(name, label, unit, colours)| {
         let values = view.map(name)?;

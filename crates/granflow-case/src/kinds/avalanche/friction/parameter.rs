@@ -60,7 +60,7 @@ pub enum Place {
     Polygons(PathBuf, String, Option<f64>),
     /// Classes by elevation.
     ByElevation(ByElevation),
-    /// One number, to be compared with another parameter that differs.
+    /// One number for all cells.
     Everywhere(f64),
 }
 
@@ -197,6 +197,16 @@ impl Parameter {
                 "keep one of them, for instance { raster = \"mu.tif\" }",
             )),
         }
+    }
+
+    /// Where it comes from, also if it is the same everywhere; `key` is that of the parameter.
+    pub fn in_place(&self, look: &Look, key: &str, range: Range) -> Result<Place, CaseError> {
+        if let Some(place) = self.place(look, key, range)? {
+            return Ok(place);
+        }
+        let number = self.usual();
+        look.number(key, number, |v| range.fits(v, 0.0), &range.allowed())?;
+        Ok(Place::Everywhere(number))
     }
 
     /// The number, or one that stands in for it where nothing is computed.

@@ -154,7 +154,7 @@ impl<'a, const D: usize, B> Avalanche<'a, D, B> {
         };
         let simulation = Simulation::new(scheme, grid, step, &ground, state)?;
         let plane = Plane::of(&grid, Arc::new(domain));
-        let physics = Flowing::<S>::new(name, film, on_terrain).with_threshold(threshold);
+        let physics = Flowing::<D, S>::new(name, film, on_terrain).with_threshold(threshold);
         Ok(Box::new(Simulated::new(simulation, physics, plane)))
     }
 }

@@ -1,11 +1,13 @@
 //! An avalanche on a chute in the papers' scaling: from a checked case to a run.
 
 use super::super::ChuteDomain;
+use super::compression::Compression;
 use super::flowing::Flowing;
 use crate::StartError;
 use crate::memory::fits;
 use crate::model::Plane;
 use crate::run::{Run, Simulated, step_size};
+use granflow_case::avalanche::Material;
 use granflow_case::avalanche::{Method, SchemeName};
 use granflow_case::chute::Plan;
 use granflow_case::{Axis, RunPlan, Side};
@@ -86,7 +88,12 @@ where
         Flow { h, q: std::array::from_fn(|k| h * u[k]) }
     };
     let simulation = Simulation::new(scheme, grid, step_size(run), ground, state)?;
-    let physics = Flowing::<S>::new(run.scheme, film, false).with_threshold(run.output.threshold);
+    let Material { pressure_coefficient, passive_coefficient, .. } = plan.material;
+    let compression = Compression::of([pressure_coefficient, passive_coefficient], film);
+    let between = compression.into_iter().map(|compression| Box::new(compression) as _).collect();
+    let physics = Flowing::<D, S>::new(run.scheme, film, false)
+        .with_threshold(run.output.threshold)
+        .with(between, None);
     Ok(Box::new(Simulated::new(simulation, physics, plane)))
 }
 

@@ -55,6 +55,17 @@ pub(crate) fn terrain(run: &RunPlan, plan: &OnTerrain) -> Result<Vec<Line>, Star
     let mut mountain = terrain::simulate(run, plan, loaded)?;
     let mut begun = Start::of(run, &mut *mountain, READ, PICTURES[1], |_| true)?;
     begun.size.reading = reading;
+    if let Some(entrainment) = &plan.entrainment {
+        // The layer, what was taken of it, and the bed where it sinks.
+        begun.size.run += 16.0 + if entrainment.lower_bed { 8.0 } else { 0.0 };
+        begun.size.saved += 8.0;
+        begun.size.maps += 1;
+    }
+    if plan.forest_breaks_at.is_some() {
+        begun.size.run += 8.0;
+        begun.size.saved += 8.0;
+        begun.size.maps += 1;
+    }
     lines.extend(start(run, &begun));
     lines.extend(remarks);
     Ok(lines)
@@ -101,7 +112,7 @@ impl Start {
             matches!(run.output.frames, Frames::Every(_) | Frames::Ends) || !watch.sections.is_empty();
         let Durations { thickness, speed, pressure } = run.output.durations;
         let durations = [thickness, speed, pressure].iter().flatten().count();
-        let kept = |map: &Quantity| map.at == At::Cells && !map.name.starts_with("duration_");
+        let kept = |map: &Quantity| map.at == At::Cells && !map.on_demand;
         let watched = watched(run, start, &watch);
         let plane = start.plane();
         let line = plane.dimensions() == 1;
@@ -233,7 +244,14 @@ fn threshold(run: &RunPlan, unit: &str) -> Line {
 }
 
 fn material(material: &Material) -> Vec<Line> {
-    let Material { friction, mu, in_space, pressure_coefficient, gravity, density, .. } = material;
+    let Material {
+        friction, mu, in_space, pressure_coefficient, passive_coefficient, gravity, density, ..
+    } = material;
+    let passive = if passive_coefficient > pressure_coefficient {
+        format!(" where it is stretched, {passive_coefficient:.6} where it is compressed")
+    } else {
+        String::new()
+    };
     let first = match in_space.first() {
         Some(first) if first.index == 0 => {
             let name = first.key.rsplit('.').next().unwrap_or_default();
@@ -243,7 +261,7 @@ fn material(material: &Material) -> Vec<Line> {
     };
     vec![
         ("friction", format!("{friction}{first}")),
-        ("material", format!("k = {pressure_coefficient:.6}, gravity {gravity}, density {density}")),
+        ("material", format!("k = {pressure_coefficient:.6}{passive}, gravity {gravity}, density {density}")),
     ]
 }
 
@@ -303,6 +321,9 @@ fn mountain(loaded: &Loaded, gravity: f64) -> Vec<Line> {
             .iter()
             .map(|(key, [least, largest])| ("parameter", format!("{key} from {least} to {largest}"))),
     );
+    if let Some((_, volume)) = &loaded.layer {
+        lines.push(("erodible", format!("a layer of {volume:.1} m3 in all")));
+    }
     let released = loaded.parts.iter().map(|(_, _, volume)| volume).sum();
     lines.push(("pits", pits(&Pits::of(bed), released)));
     lines

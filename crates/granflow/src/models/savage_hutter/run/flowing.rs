@@ -1,6 +1,6 @@
 //! The Savage-Hutter equations as a run shows them: thickness and velocity, peaks and times.
 
-use super::supply::Supply;
+use super::between::BetweenSteps;
 use crate::run::{CellOf, Field, Laws, Maps, Numbers, Physics, Record, Value};
 use granflow_case::avalanche::SchemeName;
 use granflow_case::{chute, terrain};
@@ -9,38 +9,28 @@ use granflow_model::real::CompensatedSum;
 use granflow_model::savage_hutter::Flow;
 use granflow_model::savage_hutter::ground::Bed;
 use granflow_model::scheme::Scheme;
-use std::marker::PhantomData;
 
 /// Verfahren 5 does not conserve mass. The published runs gain up to 0.4 %; beyond ten times that nothing is left of its result.
 const VERFAHREN_5: f64 = 0.04;
 
 /// A scheme for flowing mass, under the name by which a case asks for it.
-pub struct Flowing<S> {
+pub struct Flowing<const D: usize, S: Scheme<D, f64>> {
     name: &'static str,
     film: f64,
     threshold: f64,
     /// The bed has an elevation: surface and speed are shown too.
     on_terrain: bool,
-    /// What comes in the course of the run.
-    supply: Supply,
+    /// What acts between two steps, in this order.
+    between: Vec<Box<dyn BetweenSteps<D, S>>>,
     /// mu, if it was chosen by the volume.
     chosen: Option<f64>,
-    scheme: PhantomData<fn() -> S>,
 }
 
-impl<S> Flowing<S> {
+impl<const D: usize, S: Scheme<D, f64>> Flowing<D, S> {
     /// Under this name; a thinner layer than `film` is held. The threshold is the one of a case that says none.
     pub fn new(name: &'static str, film: f64, on_terrain: bool) -> Self {
         let threshold = if on_terrain { terrain::THRESHOLD } else { chute::THRESHOLD };
-        Flowing {
-            name,
-            film,
-            threshold,
-            on_terrain,
-            supply: Supply::default(),
-            chosen: None,
-            scheme: PhantomData,
-        }
+        Flowing { name, film, threshold, on_terrain, between: Vec::new(), chosen: None }
     }
     /// The same, where a layer counts in peaks, times and deposit if it is thicker than `threshold` (units of
     /// the thickness, normal to the bed).
@@ -48,10 +38,9 @@ impl<S> Flowing<S> {
     pub fn with_threshold(self, threshold: f64) -> Self {
         Flowing { threshold, ..self }
     }
-    /// The same with what comes in the course of the run, and with mu if that was chosen by the volume.
-    #[cfg(feature = "geo")]
-    pub(crate) fn with(self, supply: Supply, chosen: Option<f64>) -> Self {
-        Flowing { supply, chosen, ..self }
+    /// The same with what acts between two steps, and with mu if that was chosen by the volume.
+    pub(super) fn with(self, between: Vec<Box<dyn BetweenSteps<D, S>>>, chosen: Option<f64>) -> Self {
+        Flowing { between, chosen, ..self }
     }
 }
 
@@ -64,7 +53,7 @@ where
     cell.ground.thickness(cell.state.h)
 }
 
-impl<const D: usize, S> Physics<D> for Flowing<S>
+impl<const D: usize, S> Physics<D> for Flowing<D, S>
 where
     S: Scheme<D, f64, State = Flow<D, f64>> + 'static,
     S::Ground: Bed<D, f64>,
@@ -95,23 +84,29 @@ where
         self.threshold
     }
     fn prepare(&mut self, simulation: &mut Simulation<D, S>, _until: f64) -> f64 {
-        self.supply.bring(simulation);
-        self.supply.next(simulation)
+        self.bring(simulation);
+        self.between.iter().map(|one| one.next(simulation)).fold(f64::INFINITY, f64::min)
     }
     fn bring(&mut self, simulation: &mut Simulation<D, S>) {
-        self.supply.bring(simulation);
+        self.between.iter_mut().for_each(|one| one.act(simulation));
     }
     fn came(&self) -> f64 {
-        self.supply.came
+        self.between.iter().map(|one| one.came()).fold(0.0, f64::max)
     }
     fn save(&self) -> Vec<f64> {
-        self.supply.save()
+        self.between.iter().flat_map(|one| one.save()).collect()
     }
-    fn restore(&mut self, _simulation: &mut Simulation<D, S>, saved: &[f64]) -> bool {
-        self.supply.restore(saved)
+    fn restore(&mut self, simulation: &mut Simulation<D, S>, saved: &[f64]) -> bool {
+        let mut rest = saved;
+        let fits = self.between.iter_mut().all(|one| {
+            let Some((own, others)) = rest.split_at_checked(one.save().len()) else { return false };
+            rest = others;
+            one.restore(simulation, own)
+        });
+        fits && rest.is_empty()
     }
     fn is_settled(&self, time: f64) -> bool {
-        self.supply.is_settled(time)
+        self.between.iter().all(|one| one.is_settled(time))
     }
     fn laws(&self) -> Laws {
         // It chooses a flux for each cell, so that the two sides of a face may differ (errata, 5).
@@ -150,7 +145,8 @@ where
         for (margin, _) in margin.iter_mut().zip(&deposit).filter(|(_, h)| h.is_nan()) {
             *margin = f64::NAN;
         }
-        vec![("deposit", deposit), ("yield_margin", margin)]
+        let own = [("deposit", deposit), ("yield_margin", margin)];
+        own.into_iter().chain(self.between.iter().flat_map(|one| one.maps())).collect()
     }
     fn numbers(&self, simulation: &Simulation<D, S>, _drift: &[f64], record: &Record) -> Numbers {
         let totals = simulation.totals();
@@ -164,10 +160,7 @@ where
             ("moving_volume_final".to_owned(), totals.moving_volume),
         ];
         numbers.extend(self.chosen.map(|mu| ("friction_mu".to_owned(), mu)));
-        let waiting = self.supply.unreleased() * simulation.grid().measure();
-        if waiting > 0.0 {
-            numbers.push(("unreleased_volume".to_owned(), waiting));
-        }
+        numbers.extend(self.between.iter().flat_map(|one| one.numbers(simulation)));
         if record.flowed > 0.0 {
             numbers.push(("flowed_until".to_owned(), record.flowed));
         }

@@ -33,20 +33,8 @@ impl InCells {
     ) -> Result<InCells, StartError> {
         let mut cells = Self::everywhere(material);
         for parameter in &material.in_space {
-            let mut values = values(run, parameter, (bed, crs), remarks)?;
-            let (mut least, mut largest) = (f64::INFINITY, f64::NEG_INFINITY);
-            for (cell, (value, level)) in values.iter_mut().zip(&bed.values).enumerate() {
-                if level.is_nan() {
-                    *value = f64::NAN;
-                    continue;
-                }
-                let first = cells.number(0, cell);
-                if !parameter.range.fits(*value, first) {
-                    return Err(fault(run, parameter, bed, cell, *value));
-                }
-                (least, largest) = (least.min(*value), largest.max(*value));
-                *value /= parameter.per;
-            }
+            let first = |cell| cells.number(0, cell);
+            let (values, [least, largest]) = read(run, parameter, (bed, crs), first, remarks)?;
             if parameter.index == FOREST || !matches!(parameter.place, Place::Everywhere(_)) {
                 cells.ranges.push((parameter.key.clone(), [least, largest]));
             }
@@ -75,6 +63,31 @@ impl InCells {
         }
         all
     }
+}
+
+/// A parameter on the cells of a bed, not a number outside the data, with its least and its largest value as a case writes it. Each must
+/// be one that it can have; `first` is the first parameter of the law.
+pub(super) fn read(
+    run: &RunPlan,
+    parameter: &InSpace,
+    (bed, crs): (&Raster, Option<&Crs>),
+    first: impl Fn(usize) -> f64,
+    remarks: &mut Vec<Remark>,
+) -> Result<(Vec<f64>, [f64; 2]), StartError> {
+    let mut values = values(run, parameter, (bed, crs), remarks)?;
+    let (mut least, mut largest) = (f64::INFINITY, f64::NEG_INFINITY);
+    for (cell, (value, level)) in values.iter_mut().zip(&bed.values).enumerate() {
+        if level.is_nan() {
+            *value = f64::NAN;
+            continue;
+        }
+        if !parameter.range.fits(*value, first(cell)) {
+            return Err(fault(run, parameter, bed, cell, *value));
+        }
+        (least, largest) = (least.min(*value), largest.max(*value));
+        *value /= parameter.per;
+    }
+    Ok((values, [least, largest]))
 }
 
 /// The values of a parameter on the cells of a bed.

@@ -1,5 +1,7 @@
 //! Mass that comes in the course of a run: late and secondary releases, inflows.
 
+use super::between::BetweenSteps;
+use crate::run::Numbers;
 use granflow_case::terrain::{Hydrograph, Starts};
 use granflow_engine::simulation::Simulation;
 use granflow_model::savage_hutter::Flow;
@@ -36,7 +38,8 @@ pub(crate) struct Inflow {
     pub until: f64,
 }
 
-/// All that comes in the course of a run.
+/// All that comes in the course of a run; by default nothing.
+#[derive(Default)]
 pub(crate) struct Supply {
     pub late: Vec<Late>,
     pub inflows: Vec<Inflow>,
@@ -44,64 +47,16 @@ pub(crate) struct Supply {
     pub came: f64,
 }
 
-impl Default for Supply {
-    /// Nothing comes.
-    fn default() -> Self {
-        Supply { late: Vec::new(), inflows: Vec::new(), came: 0.0 }
-    }
-}
+/// Flowing mass of this thickness reaches a place, picks up what lies there and breaks what stands there \[m\].
+pub(super) const REACHES: f64 = 0.01;
 
 /// The share of a cell that entering mass may cross in a step.
 const CROSSED: f64 = 0.25;
-
-/// Flowing mass of this thickness lets a secondary release start \[m\].
-const HITS: f64 = 0.01;
 
 impl Supply {
     /// Nothing comes.
     pub fn is_empty(&self) -> bool {
         self.late.is_empty() && self.inflows.is_empty()
-    }
-
-    /// Nothing begins or goes on after `time`, but a secondary release that nothing reaches any more.
-    pub fn is_settled(&self, time: f64) -> bool {
-        let begun = |late: &Late| late.came || late.starts == Starts::Hit;
-        let ended = |inflow: &Inflow| inflow.hydrograph.end() <= time.min(inflow.until);
-        self.late.iter().all(begun) && self.inflows.iter().all(ended)
-    }
-
-    /// Bring what has come up to the time of the simulation.
-    pub fn bring<const D: usize, S>(&mut self, simulation: &mut Simulation<D, S>)
-    where
-        S: Scheme<D, f64, State = Flow<D, f64>>,
-        S::Ground: Bed<D, f64>,
-    {
-        if self.is_empty() {
-            return;
-        }
-        let (time, before) = (simulation.time(), simulation.poured());
-        self.release(simulation, time);
-        for inflow in &mut self.inflows {
-            inflow.enter(simulation, time);
-        }
-        if simulation.poured() != before {
-            self.came = time;
-        }
-    }
-
-    /// The time up to which nothing else comes, or by which it must be asked again.
-    pub fn next<const D: usize, S>(&self, simulation: &Simulation<D, S>) -> f64
-    where
-        S: Scheme<D, f64, State = Flow<D, f64>>,
-        S::Ground: Bed<D, f64>,
-    {
-        let time = simulation.time();
-        let late = self.late.iter().filter(|late| !late.came).filter_map(|late| match late.starts {
-            Starts::At(at) => Some(at),
-            Starts::Hit => None,
-        });
-        let inflows = self.inflows.iter().map(|inflow| inflow.next(simulation, time));
-        late.chain(inflows).fold(f64::INFINITY, f64::min)
     }
 
     /// The releases that start now; where several cover a cell their order does not matter.
@@ -113,7 +68,7 @@ impl Supply {
         let grid = *simulation.grid();
         let reached = |cell: usize| {
             let here = simulation.cell(grid.index(cell));
-            !here.state.is_still() && here.ground.thickness(here.state.h) > HITS
+            !here.state.is_still() && here.ground.thickness(here.state.h) > REACHES
         };
         let starts = |late: &&mut Late| {
             !late.came
@@ -140,25 +95,52 @@ impl Supply {
             .collect();
         give(simulation, states);
     }
+}
 
-    /// What a checkpoint must keep.
-    pub fn save(&self) -> Vec<f64> {
-        if self.is_empty() {
-            return Vec::new();
+impl<const D: usize, S> BetweenSteps<D, S> for Supply
+where
+    S: Scheme<D, f64, State = Flow<D, f64>>,
+    S::Ground: Bed<D, f64>,
+{
+    fn act(&mut self, simulation: &mut Simulation<D, S>) {
+        let (time, before) = (simulation.time(), simulation.poured());
+        self.release(simulation, time);
+        for inflow in &mut self.inflows {
+            inflow.enter(simulation, time);
         }
+        if simulation.poured() != before {
+            self.came = time;
+        }
+    }
+
+    fn next(&self, simulation: &Simulation<D, S>) -> f64 {
+        let time = simulation.time();
+        let late = self.late.iter().filter(|late| !late.came).filter_map(|late| match late.starts {
+            Starts::At(at) => Some(at),
+            Starts::Hit => None,
+        });
+        let inflows = self.inflows.iter().map(|inflow| inflow.next(simulation, time));
+        late.chain(inflows).fold(f64::INFINITY, f64::min)
+    }
+
+    /// But for a secondary release that nothing reaches any more.
+    fn is_settled(&self, time: f64) -> bool {
+        let begun = |late: &Late| late.came || late.starts == Starts::Hit;
+        let ended = |inflow: &Inflow| inflow.hydrograph.end() <= time.min(inflow.until);
+        self.late.iter().all(begun) && self.inflows.iter().all(ended)
+    }
+
+    fn came(&self) -> f64 {
+        self.came
+    }
+
+    fn save(&self) -> Vec<f64> {
         let came = self.late.iter().map(|late| f64::from(u8::from(late.came)));
         let entered = self.inflows.iter().flat_map(|inflow| [inflow.entered, inflow.until]);
         std::iter::once(self.came).chain(came).chain(entered).collect()
     }
 
-    /// Take it up again; false where it does not fit.
-    pub fn restore(&mut self, saved: &[f64]) -> bool {
-        if self.is_empty() {
-            return saved.is_empty();
-        }
-        if saved.len() != 1 + self.late.len() + 2 * self.inflows.len() {
-            return false;
-        }
+    fn restore(&mut self, _simulation: &mut Simulation<D, S>, saved: &[f64]) -> bool {
         self.came = saved[0];
         let (came, entered) = saved[1..].split_at(self.late.len());
         self.late.iter_mut().zip(came).for_each(|(late, came)| late.came = *came != 0.0);
@@ -168,10 +150,13 @@ impl Supply {
         true
     }
 
-    /// Volume per cell area of the releases that have not started \[m\].
-    pub fn unreleased(&self) -> f64 {
+    fn numbers(&self, simulation: &Simulation<D, S>) -> Numbers {
         let waiting = self.late.iter().filter(|late| !late.came);
-        waiting.flat_map(|late| &late.cells).map(|(_, volume)| volume).sum()
+        let volume: f64 = waiting.flat_map(|late| &late.cells).map(|(_, volume)| volume).sum();
+        if volume == 0.0 {
+            return Numbers::default();
+        }
+        vec![("unreleased_volume".to_owned(), volume * simulation.grid().measure())]
     }
 }
 
@@ -232,8 +217,8 @@ impl Inflow {
             let pull = here.ground.gravity();
             // The cell's own wave sqrt(2 g h) of what comes in the step, and its speed; on a dry bed the front must not be late.
             let by_wave = (CROSSED * size / (2.0 * pull * rises).sqrt()).powf(2.0 / 3.0);
-            let dry = here.ground.thickness(here.state.h) < HITS;
-            let by_front = if dry { CROSSED * HITS / rises } else { f64::INFINITY };
+            let dry = here.ground.thickness(here.state.h) < REACHES;
+            let by_front = if dry { CROSSED * REACHES / rises } else { f64::INFINITY };
             by_wave.min(CROSSED * size / most(speed)).min(by_front)
         };
         let longest = self.inlets.iter().map(step).fold(f64::INFINITY, f64::min);
@@ -242,8 +227,10 @@ impl Inflow {
 }
 
 /// Give cells these states, and count them in the maps of peaks and arrivals.
-fn give<const D: usize, S>(simulation: &mut Simulation<D, S>, states: Vec<([usize; D], Flow<D, f64>)>)
-where
+pub(super) fn give<const D: usize, S>(
+    simulation: &mut Simulation<D, S>,
+    states: Vec<([usize; D], Flow<D, f64>)>,
+) where
     S: Scheme<D, f64, State = Flow<D, f64>>,
     S::Ground: Bed<D, f64>,
 {

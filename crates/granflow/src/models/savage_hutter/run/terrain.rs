@@ -1,8 +1,12 @@
 //! An avalanche on a mountain, SI units: from a checked case to a run.
 
 use super::super::TerrainDomain;
+use super::between::BetweenSteps;
+use super::compression::Compression;
+use super::erosion::Erodible;
 use super::flowing::Flowing;
-use super::parameters::InCells;
+use super::forest::Forest;
+use super::parameters::{self, InCells};
 use super::supply::{Inflow, Inlet, Late, Supply};
 use crate::StartError;
 use crate::memory::fits;
@@ -10,7 +14,9 @@ use crate::model::Plane;
 use crate::run::{Run, Simulated, step_size};
 use granflow_case::RunPlan;
 use granflow_case::avalanche::Material;
-use granflow_case::terrain::{Extent, Measured, Over, Plan, Release, Starts, TerrainScheme, Thickness};
+use granflow_case::terrain::{
+    Entrainment, Extent, Measured, Over, Plan, Release, Starts, TerrainScheme, Thickness,
+};
 use granflow_engine::grid::Grid;
 use granflow_engine::kernels::Kernel;
 use granflow_engine::simulation::Simulation;
@@ -45,7 +51,9 @@ pub(super) struct Loaded {
     /// The material; where mu is that of the volume, that.
     pub material: Material,
     /// What of the friction differs from cell to cell.
-    pub parameters: InCells,
+    pub parameters: Arc<InCells>,
+    /// The depth of the erodible layer \[m\], if there is one, and its volume \[m^3\].
+    pub layer: Option<(Vec<f64>, f64)>,
     /// What comes in the course of the run.
     pub supply: Supply,
     /// Bytes that were held while the elevation model was read.
@@ -66,7 +74,7 @@ impl Loaded {
 pub(super) fn simulate(
     run: &RunPlan,
     plan: &Plan,
-    Loaded { terrain, release, remarks, material, parameters, supply, .. }: Loaded,
+    Loaded { terrain, release, remarks, material, parameters, layer, supply, .. }: Loaded,
 ) -> Result<Box<dyn Run>, StartError> {
     let (bed, gravity) = (&terrain.bed, plan.material.gravity);
     let columns = bed.columns;
@@ -92,12 +100,25 @@ pub(super) fn simulate(
     };
     let plane = Plane::of(&grid, Arc::new(domain));
     let film = plan.scheme.film;
-    // What comes later brings a head of its own.
-    let ceiling = if supply.is_empty() { gravity * ceiling(&terrain, &release) } else { f64::MAX };
-    let ground = move |cell| ground_at(&terrain, gravity, cell);
+    // What comes later and what is picked up bring a head of their own.
+    let grows = !supply.is_empty() || layer.as_ref().is_some_and(|(_, volume)| *volume > 0.0);
+    let Material { pressure_coefficient, passive_coefficient, .. } = plan.material;
+    let ceiling = if grows { f64::MAX } else { gravity * ceiling(&terrain, pressure_coefficient, &release) };
+    let compression = Compression::of([pressure_coefficient, passive_coefficient], film);
+    let erodible = plan.entrainment.as_ref().zip(layer).map(|(entrainment, (whole, _))| Erodible {
+        law: entrainment.law,
+        friction: material.law,
+        parameters: parameters.clone(),
+        densities: [plan.material.density, entrainment.density],
+        level: if entrainment.lower_bed { terrain.bed.values.clone() } else { Vec::new() },
+        taken: vec![0.0; whole.len()],
+        whole,
+        until: 0.0,
+    });
+    let ground = move |cell| ground_at(&terrain, gravity, cell).with_pressure(pressure_coefficient);
     let state = move |[i, j]: [usize; 2]| Flow::still(release.get(j * columns + i));
     let chosen = material.mu.filter(|_| material.by_volume);
-    let begin = Begin { run, film, grid, plane, supply, chosen };
+    let begin = Begin { run, film, grid, plane, supply, erodible, compression, chosen };
     let Some(law) = material.law_in_loops() else {
         let law = material.law;
         let scheme = match plan.scheme.name {
@@ -108,16 +129,24 @@ pub(super) fn simulate(
             }
         };
         let of_cell = move |[i, j]: [usize; 2], _| parameters.at(j * columns + i);
-        return begin.with(scheme.below(ceiling), ground, state, of_cell);
+        let forest = plan.forest_breaks_at.map(|strength| Forest {
+            density: plan.material.density,
+            strength,
+            broken: vec![f64::NAN; grid.count()],
+        });
+        let forest = forest.map(|forest| Box::new(forest) as _);
+        return begin.with(scheme.below(ceiling), ground, state, (of_cell, forest));
     };
     match plan.scheme.name {
-        TerrainScheme::Balanced => begin.with(Balanced::first(law, film), ground, state, |_, ()| ()),
-        TerrainScheme::Balanced2 => begin.with(Balanced::second(law, film), ground, state, |_, ()| ()),
+        TerrainScheme::Balanced => begin.with(Balanced::first(law, film), ground, state, (|_, ()| (), None)),
+        TerrainScheme::Balanced2 => {
+            begin.with(Balanced::second(law, film), ground, state, (|_, ()| (), None))
+        }
         TerrainScheme::EnergyStable => {
-            begin.with(EnergyStable::first(law, film).below(ceiling), ground, state, |_, ()| ())
+            begin.with(EnergyStable::first(law, film).below(ceiling), ground, state, (|_, ()| (), None))
         }
         TerrainScheme::EnergyStable2 => {
-            begin.with(EnergyStable::second(law, film).below(ceiling), ground, state, |_, ()| ())
+            begin.with(EnergyStable::second(law, film).below(ceiling), ground, state, (|_, ()| (), None))
         }
     }
 }
@@ -129,40 +158,49 @@ struct Begin<'a> {
     grid: Grid<2>,
     plane: Plane,
     supply: Supply,
+    erodible: Option<Erodible>,
+    compression: Option<Compression>,
     /// mu, if it was chosen by the volume.
     chosen: Option<f64>,
 }
 
 impl Begin<'_> {
-    /// With a scheme, and what acts on each cell.
+    /// With a scheme, what acts on each cell, and what may change that.
     fn with<S>(
         self,
         scheme: S,
         ground: impl Fn([usize; 2]) -> ground::Terrain<2, f64> + Sync,
         state: impl Fn([usize; 2]) -> Flow<2, f64> + Sync,
-        forcing: impl Fn([usize; 2], S::Forcing) -> S::Forcing + Sync,
+        (forcing, forest): (
+            impl Fn([usize; 2], S::Forcing) -> S::Forcing + Sync,
+            Option<Box<dyn BetweenSteps<2, S>>>,
+        ),
     ) -> Result<Box<dyn Run>, StartError>
     where
         S: Kernel<2, State = Flow<2, f64>, Ground = ground::Terrain<2, f64>> + 'static,
     {
-        let Begin { run, film, grid, plane, supply, chosen } = self;
+        let Begin { run, film, grid, plane, supply, erodible, compression, chosen } = self;
         fits(grid.cells.iter().product(), Simulation::<2, S>::bytes_per_cell(false))?;
         let mut simulation = Simulation::new(scheme, grid, step_size(run), ground, state)?;
         simulation.apply(forcing);
+        let supply = (!supply.is_empty()).then(|| Box::new(supply) as Box<dyn BetweenSteps<2, S>>);
+        let erodible = erodible.map(|erodible| Box::new(erodible) as _);
+        let compression = compression.map(|compression| Box::new(compression) as _);
+        let between = supply.into_iter().chain(erodible).chain(forest).chain(compression).collect();
         let physics =
-            Flowing::new(run.scheme, film, true).with_threshold(run.output.threshold).with(supply, chosen);
+            Flowing::new(run.scheme, film, true).with_threshold(run.output.threshold).with(between, chosen);
         Ok(Box::new(Simulated::new(simulation, physics, plane)))
     }
 }
 
 /// The highest total head \[m\] that a mass released at rest can have: its highest surface and its greatest height c^2 H over
-/// the bed, which a front gains.
-fn ceiling(terrain: &Terrain, release: &Sparse) -> f64 {
+/// the bed, which a front gains; a depth counts by the earth-pressure coefficient `k`.
+fn ceiling(terrain: &Terrain, k: f64, release: &Sparse) -> f64 {
     let (mut top, mut deepest) = (f64::NEG_INFINITY, 0.0_f64);
     for (cell, volume) in release.iter().filter(|(_, volume)| *volume > 0.0) {
         let [column, row] = terrain.bed.place(cell);
         let cos = terrain.fit([column, row]).cosine();
-        let depth = cos * cos * volume;
+        let depth = k * (cos * cos * volume);
         top = top.max(terrain.bed.at(column, row) + depth);
         deepest = deepest.max(depth);
     }
@@ -191,9 +229,19 @@ pub(super) fn load(run: &RunPlan, plan: &Plan) -> Result<Loaded, StartError> {
     remarks.extend(survey.warnings(&plan.dem.display().to_string()));
     let terrain = curved(run, plan, bed)?;
     let (release, parts, supply) = (Sparse::default(), Vec::new(), Supply::default());
-    let (material, parameters) = (plan.material.clone(), InCells::everywhere(&plan.material));
-    let mut loaded =
-        Loaded { terrain, release, parts, remarks, survey, material, parameters, supply, reading };
+    let (material, parameters) = (plan.material.clone(), Arc::new(InCells::everywhere(&plan.material)));
+    let mut loaded = Loaded {
+        terrain,
+        release,
+        parts,
+        remarks,
+        survey,
+        material,
+        parameters,
+        layer: None,
+        supply,
+        reading,
+    };
     for one in &plan.releases {
         add(&mut loaded, one, crs.as_ref())?;
     }
@@ -210,10 +258,31 @@ pub(super) fn load(run: &RunPlan, plan: &Plan) -> Result<Loaded, StartError> {
         loaded.remarks.push(Remark::Note(text));
     }
     let bed = loaded.terrain.bed.clone();
-    loaded.parameters = InCells::read(run, &material, (&bed, crs.as_ref()), &mut loaded.remarks)?;
-    loaded.material = material;
+    let parameters = InCells::read(run, &material, (&bed, crs.as_ref()), &mut loaded.remarks)?;
+    (loaded.material, loaded.parameters) = (material, Arc::new(parameters));
+    if let Some(entrainment) = &plan.entrainment {
+        loaded.layer = Some(layer(run, entrainment, crs.as_ref(), &mut loaded)?);
+    }
     trim();
     Ok(loaded)
+}
+
+/// The depth of the erodible layer in every cell \[m\], 0 outside the data, and its volume \[m^3\].
+fn layer(
+    run: &RunPlan,
+    entrainment: &Entrainment,
+    crs: Option<&Crs>,
+    loaded: &mut Loaded,
+) -> Result<(Vec<f64>, f64), StartError> {
+    let terrain = &loaded.terrain;
+    let bed = &terrain.bed;
+    let first = |_| f64::NEG_INFINITY;
+    let (mut depth, _) = parameters::read(run, &entrainment.layer, (bed, crs), first, &mut loaded.remarks)?;
+    depth.iter_mut().filter(|depth| depth.is_nan()).for_each(|depth| *depth = 0.0);
+    let volumes = depth.iter().enumerate().filter(|(_, depth)| **depth > 0.0);
+    let volumes = volumes.map(|(cell, depth)| depth / terrain.fit(bed.place(cell)).cosine());
+    let volume = volumes.sum::<f64>() * bed.cell * bed.cell;
+    Ok((depth, volume))
 }
 
 /// Hands back to the system what reading has left: the allocator would keep it for more of the same, and none will come.

@@ -1,0 +1,149 @@
+//! The passive earth pressure, which acts against compression between two steps, axis by axis.
+
+use super::between::BetweenSteps;
+use granflow_engine::grid::Grid;
+use granflow_engine::simulation::Simulation;
+use granflow_model::savage_hutter::Flow;
+use granflow_model::savage_hutter::earth_pressure::{Mass, excess, stresses};
+use granflow_model::savage_hutter::ground::Bed;
+use granflow_model::scheme::{Boundary, Scheme};
+use std::collections::BTreeSet;
+
+/// What compression adds to the earth pressure of a scheme.
+pub(super) struct Compression {
+    /// k_pas/k_act - 1.
+    excess: f64,
+    /// A thinner layer is held.
+    film: f64,
+    /// The time up to which it has acted.
+    until: f64,
+}
+
+/// A wall is a cell so many times heavier than the line before it.
+const WALL: f64 = 1e12;
+
+/// A wet cell of a line.
+struct Wet<const D: usize> {
+    index: [usize; D],
+    state: Flow<D, f64>,
+    /// M e, the acceleration that a force along the line gives.
+    along: [f64; D],
+    head: f64,
+}
+
+impl Compression {
+    /// Of a mass with these coefficients of stretching and compression, if they differ.
+    pub fn of([active, passive]: [f64; 2], film: f64) -> Option<Self> {
+        (passive > active).then(|| Compression { excess: passive / active - 1.0, film, until: 0.0 })
+    }
+
+    /// A cell as a line along `axis` sees it, if it is more than a film.
+    fn wet<const D: usize, S>(
+        &self,
+        simulation: &Simulation<D, S>,
+        index: [usize; D],
+        axis: usize,
+    ) -> Option<Wet<D>>
+    where
+        S: Scheme<D, f64, State = Flow<D, f64>>,
+        S::Ground: Bed<D, f64>,
+    {
+        let (state, ground) = (simulation.state(index), simulation.ground(index));
+        if simulation.scheme().is_nodata(&ground) || state.h < self.film || state.h <= 0.0 {
+            return None;
+        }
+        let unit = std::array::from_fn(|k| if k == axis { 1.0 } else { 0.0 });
+        let along = S::Ground::metric(&ground.plane(), unit);
+        Some(Wet { index, state, along, head: ground.head() })
+    }
+
+    /// The states of wet cells side by side along `axis` after a step with dt/dx = `lambda`.
+    fn pressed<const D: usize>(
+        &self,
+        grid: &Grid<D>,
+        cells: &[&Wet<D>],
+        (axis, lambda): (usize, f64),
+    ) -> Vec<([usize; D], Flow<D, f64>)> {
+        let (first, last) = (cells[0], cells[cells.len() - 1]);
+        let ends = [first.index[axis] == 0, last.index[axis] + 1 == grid.cells[axis]];
+        let walls = [0, 1].map(|side| ends[side] && grid.boundary[axis][side] == Boundary::Wall);
+        let most =
+            |a: &Wet<D>, b: &Wet<D>| excess(self.excess, [a.head, b.head], [a.state.h, b.state.h], lambda);
+        let of = |(k, cell): (usize, &&Wet<D>)| Mass {
+            mass: cell.state.h / cell.along[axis],
+            velocity: cell.state.velocity()[axis],
+            most: cells.get(k + 1).map_or(0.0, |next| most(cell, next)),
+        };
+        let mut line: Vec<Mass> = cells.iter().enumerate().map(of).collect();
+        let wall =
+            |cell: &Wet<D>, mass: f64| Mass { mass: WALL * mass, velocity: 0.0, most: most(cell, cell) };
+        let mass: f64 = line.iter().map(|cell| cell.mass).sum();
+        if walls[1] {
+            if let Some(before) = line.last_mut() {
+                before.most = most(last, last);
+            }
+            line.push(wall(last, mass));
+        }
+        if walls[0] {
+            line.insert(0, wall(first, mass));
+        }
+        let pushes = stresses(&line).into_iter().skip(usize::from(walls[0]));
+        let pressed = cells.iter().zip(pushes).filter(|(_, push)| *push != 0.0);
+        pressed
+            .map(|(cell, push)| {
+                let q = std::array::from_fn(|k| cell.state.q[k] + cell.along[k] * push);
+                (cell.index, Flow { h: cell.state.h, q })
+            })
+            .collect()
+    }
+}
+
+impl<const D: usize, S> BetweenSteps<D, S> for Compression
+where
+    S: Scheme<D, f64, State = Flow<D, f64>>,
+    S::Ground: Bed<D, f64>,
+{
+    fn act(&mut self, simulation: &mut Simulation<D, S>) {
+        let (time, dt) = (simulation.time(), simulation.time() - self.until);
+        if dt <= 0.0 {
+            return;
+        }
+        self.until = time;
+        let grid = *simulation.grid();
+        for axis in 0..D {
+            let lambda = dt / grid.size[axis];
+            let begins = simulation.of_moving(|mut index, _| {
+                index[axis] = 0;
+                Some(index)
+            });
+            let mut states = Vec::new();
+            for begin in begins.into_iter().collect::<BTreeSet<_>>() {
+                let line: Vec<_> = (0..grid.cells[axis])
+                    .map(|k| {
+                        let mut index = begin;
+                        index[axis] = k;
+                        self.wet(simulation, index, axis)
+                    })
+                    .collect();
+                for run in line.split(Option::is_none) {
+                    let run: Vec<&Wet<D>> = run.iter().flatten().collect();
+                    if run.iter().any(|cell| !cell.state.is_still()) {
+                        states.extend(self.pressed(&grid, &run, (axis, lambda)));
+                    }
+                }
+            }
+            if !states.is_empty() {
+                simulation.change(states);
+            }
+        }
+    }
+
+    fn save(&self) -> Vec<f64> {
+        vec![self.until]
+    }
+
+    fn restore(&mut self, _simulation: &mut Simulation<D, S>, saved: &[f64]) -> bool {
+        self.until = saved[0];
+        true
+    }
+}

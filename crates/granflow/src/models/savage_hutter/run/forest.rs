@@ -1,0 +1,71 @@
+//! A forest that breaks under the pressure of the flow and resists it no more.
+
+use super::between::BetweenSteps;
+use super::supply::REACHES;
+use crate::run::{Maps, Numbers};
+use granflow_engine::simulation::Simulation;
+use granflow_model::savage_hutter::Flow;
+use granflow_model::savage_hutter::friction::Parameters;
+use granflow_model::savage_hutter::ground::Bed;
+use granflow_model::scheme::Scheme;
+
+/// A forest that can break.
+pub(super) struct Forest {
+    /// Density of the flow \[kg/m^3\].
+    pub density: f64,
+    /// The dynamic pressure rho |V|^2 that breaks it \[Pa\].
+    pub strength: f64,
+    /// The time at which it broke in each cell; not a number where it stands or there is none.
+    pub broken: Vec<f64>,
+}
+
+impl Forest {
+    /// Take it away in these cells.
+    fn clear<S>(simulation: &mut Simulation<2, S>, cells: impl Iterator<Item = usize>)
+    where
+        S: Scheme<2, f64, Forcing = Parameters<f64>>,
+    {
+        let grid = *simulation.grid();
+        simulation.apply_to(cells.map(|cell| grid.index(cell)), Parameters::on_bare_bed);
+    }
+}
+
+impl<S> BetweenSteps<2, S> for Forest
+where
+    S: Scheme<2, f64, State = Flow<2, f64>, Forcing = Parameters<f64>>,
+    S::Ground: Bed<2, f64>,
+{
+    fn act(&mut self, simulation: &mut Simulation<2, S>) {
+        let (time, columns) = (simulation.time(), simulation.grid().cells[0]);
+        let broken = simulation.of_moving(|[i, j], here| {
+            let pressure = self.density * here.ground.square(here.state.velocity());
+            let breaks = here.forcing.drag > 0.0
+                && pressure > self.strength
+                && here.ground.thickness(here.state.h) >= REACHES;
+            breaks.then_some(j * columns + i)
+        });
+        for cell in &broken {
+            self.broken[*cell] = time;
+        }
+        Self::clear(simulation, broken.into_iter());
+    }
+
+    fn save(&self) -> Vec<f64> {
+        self.broken.clone()
+    }
+
+    fn restore(&mut self, simulation: &mut Simulation<2, S>, saved: &[f64]) -> bool {
+        self.broken.copy_from_slice(saved);
+        Self::clear(simulation, (0..saved.len()).filter(|cell| !saved[*cell].is_nan()));
+        true
+    }
+
+    fn numbers(&self, simulation: &Simulation<2, S>) -> Numbers {
+        let cells = self.broken.iter().filter(|time| !time.is_nan()).count();
+        vec![("forest_broken_area".to_owned(), cells as f64 * simulation.grid().measure())]
+    }
+
+    fn maps(&self) -> Maps {
+        vec![("forest_broken", self.broken.clone())]
+    }
+}
