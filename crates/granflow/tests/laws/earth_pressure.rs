@@ -3,6 +3,7 @@
 use granflow::Case;
 use granflow::run::Run;
 use granflow::savage_hutter::earth_pressure::coefficients;
+use granflow::savage_hutter::exact::{CapRelease, SimilarityCap};
 
 const SLOPE: f64 = 35.0;
 const BED: f64 = 25.0;
@@ -195,4 +196,38 @@ fn what_has_no_such_coefficient_is_refused() {
         let error = Case::parse(&text, "test.toml").and_then(|case| case.check().map(drop)).unwrap_err();
         assert!(error.to_string().contains(words), "{error}");
     }
+}
+
+/// Benchmark C with k_act along both axes: the cap is stretched along both as it slides down.
+#[test]
+fn a_round_cap_spreads_with_the_active_coefficient() {
+    let [active, _] = coefficients(INTERNAL.to_radians().tan(), BED.to_radians().tan()).unwrap();
+    let text = "grid = { x = { from = -120.0, to = 160.0, cells = 112 }, y = { from = -120.0, to = 120.0, cells = 96 } }\n\
+                initial.thickness.cap = { height = 4.0, radius = 80.0 }\nscheme.name = \"energy_stable_2\"\ntime.end = 5.0\n\
+                [material]\ngravity = 9.81\nslope = \"35 deg\"\nfriction.coulomb = { angle = \"25 deg\" }\n\
+                earth_pressure.active_passive = { internal = \"35 deg\" }\n";
+    let mut run = start(text);
+    run.until(5.0).unwrap();
+    let (dx, h) = (2.5, run.field("thickness").unwrap());
+    let error = |k: f64| {
+        let release = CapRelease {
+            height: 4.0,
+            length: 80.0,
+            slope: SLOPE.to_radians(),
+            friction: BED.to_radians(),
+            earth_pressure: k,
+            gravity: 9.81,
+        };
+        let exact = SimilarityCap::new(release, 80.0, k).unwrap().at(5.0);
+        let (mut wrong, mut volume) = (0.0, 0.0);
+        for (cell, h) in h.iter().enumerate() {
+            let place = [cell % 112, cell / 112].map(|k| -120.0 + (k as f64 + 0.5) * dx);
+            wrong += (h - exact.flow(place[0], place[1]).h).abs();
+            volume += h;
+        }
+        wrong / volume
+    };
+    let (own, one) = (error(active), error(1.0));
+    assert!(own < 0.01, "{own}");
+    assert!(one > 2.0 * own, "{one} under k = 1");
 }
