@@ -7,6 +7,7 @@ use serde::{Deserialize, Serialize};
 
 use super::avalanche::{self, EarthPressure, Friction, Material, Method, Parameter, SchemeName};
 use super::{About, Foreign, Kind, Written};
+use crate::ensemble;
 use crate::fault::CaseError;
 use crate::look::Look;
 use crate::output::{Defaults, Output};
@@ -22,7 +23,7 @@ mod words;
 use words::Elevation;
 
 pub use inflow::{Hydrograph, Inflow, Over};
-pub use release::{Attribute, Cap, Extent, Measured, Release, Starts, Thickness};
+pub use release::{Attribute, Cap, Extent, Features, Measured, Release, Starts, Thickness};
 
 /// The film of a case that says none \[m\]: a layer of a tenth of a millimetre, thinner than a grain, does not flow.
 pub const FILM: f64 = 1e-4;
@@ -107,6 +108,9 @@ pub(crate) struct Words {
     /// Lines through which the passing mass is counted.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     section: Vec<SectionWords>,
+    /// Many runs of this case, for `granflow ensemble`.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    ensemble: Option<ensemble::Words>,
 }
 
 /// The material.
@@ -185,6 +189,10 @@ impl Written for Words {
         });
         Ok((run, kind))
     }
+
+    fn ensemble(&self) -> Option<(&ensemble::Words, bool)> {
+        self.ensemble.as_ref().map(|words| (words, true))
+    }
 }
 
 impl OnTerrain {
@@ -231,11 +239,12 @@ const WRITTEN: Defaults = Defaults {
 };
 
 /// Keys that not every model has.
-const KEYS: [&str; 12] = {
-    let [material, film, rest_speed, trickle, stop, gauge, section, series, durations] = avalanche::KEYS;
+const KEYS: [&str; 13] = {
+    let [material, film, rest_speed, trickle, stop, gauge, section, series, durations, ensemble] =
+        avalanche::KEYS;
     [
-        material, film, rest_speed, trickle, stop, gauge, section, series, durations, "terrain", "release",
-        "inflow",
+        material, film, rest_speed, trickle, stop, gauge, section, series, durations, ensemble, "terrain",
+        "release", "inflow",
     ]
 };
 

@@ -5,6 +5,8 @@ pub(crate) mod chute;
 pub(crate) mod describe;
 pub mod flowing;
 #[cfg(feature = "geo")]
+pub(crate) mod mountain;
+#[cfg(feature = "geo")]
 mod parameters;
 #[cfg(all(feature = "geo", feature = "threads"))]
 pub(crate) mod speed;
