@@ -161,7 +161,7 @@ impl Ensemble {
         ];
         let case = Section {
             title: "Case".to_owned(),
-            text: run.text().lines().map(str::to_owned).collect(),
+            code: run.text(),
             ..Section::default()
         };
         let maps = Section { title: "Maps".to_owned(), figures, ..Section::default() };

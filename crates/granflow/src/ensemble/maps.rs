@@ -41,10 +41,6 @@ impl Ensemble {
     #[must_use]
     pub fn maps(&self, reduced: &Reduced) -> Vec<Map> {
         let count = reduced.computed();
-        let at = |value: &dyn Fn(usize) -> f64| -> Vec<f64> {
-            let of = |(cell, reached): (usize, &u32)| if *reached > 0 { value(cell) } else { f64::NAN };
-            reduced.reached.iter().enumerate().map(of).collect()
-        };
         let threshold = self.run.output.threshold;
         let mut maps = vec![Map {
             name: "members_reached".to_owned(),
@@ -52,10 +48,10 @@ impl Ensemble {
             units: "1",
             quantity: String::new(),
             measure: Measure::Members,
-            values: at(&|cell| f64::from(reduced.reached[cell])),
+            values: at(reduced, |cell| f64::from(reduced.reached[cell])),
         }];
         for peaks in &reduced.peaks {
-            maps.extend(self.of_peaks(peaks, reduced, count, &at));
+            maps.extend(self.of_peaks(peaks, reduced, count));
         }
         maps
     }
@@ -73,13 +69,7 @@ impl Ensemble {
         }
     }
 
-    fn of_peaks(
-        &self,
-        peaks: &Peaks,
-        reduced: &Reduced,
-        count: u32,
-        at: &dyn Fn(&dyn Fn(usize) -> f64) -> Vec<f64>,
-    ) -> Vec<Map> {
+    fn of_peaks(&self, peaks: &Peaks, reduced: &Reduced, count: u32) -> Vec<Map> {
         let quantity = peaks.name.trim_start_matches("peak_").to_owned();
         let units = self.plane.model().quantity(&peaks.name);
         let units = units.map_or("1", |quantity| quantity.units_in(self.plane.domain.units()));
@@ -99,7 +89,7 @@ impl Ensemble {
                 format!("share of the members whose peak {quantity} exceeded {threshold}{unit}"),
                 "1",
                 Measure::Exceedance(*threshold),
-                at(&|cell| f64::from(above[cell]) / f64::from(count)),
+                at(reduced, |cell| f64::from(above[cell]) / f64::from(count)),
             ));
         }
         if let Some(bits) = reduced.bits {
@@ -109,7 +99,7 @@ impl Ensemble {
                     format!("peak {quantity} that {percent} % of the members do not exceed"),
                     units,
                     Measure::Percentile(*percent),
-                    at(&|cell| {
+                    at(reduced, |cell| {
                         let value = peaks.classes[cell].percentile(percent / 100.0, count, bits);
                         value.min(peaks.largest[cell])
                     }),
@@ -121,17 +111,23 @@ impl Ensemble {
             format!("mean peak {quantity} of all members, 0 for those that did not come"),
             units,
             Measure::Mean,
-            at(&|cell| peaks.mean(cell, count)),
+            at(reduced, |cell| peaks.mean(cell, count)),
         ));
         maps.push(map(
             format!("largest_{quantity}"),
             format!("largest peak {quantity} of all members"),
             units,
             Measure::Largest,
-            at(&|cell| peaks.largest[cell]),
+            at(reduced, |cell| peaks.largest[cell]),
         ));
         maps
     }
+}
+
+/// Values where a member came.
+fn at(reduced: &Reduced, value: impl Fn(usize) -> f64) -> Vec<f64> {
+    let of = |(cell, reached): (usize, &u32)| if *reached > 0 { value(cell) } else { f64::NAN };
+    reduced.reached.iter().enumerate().map(of).collect()
 }
 
 /// A number as a part of a name: 0.5 is 0_5.

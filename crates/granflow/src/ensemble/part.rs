@@ -4,8 +4,8 @@ use super::classes::Classes;
 use super::member::{Row, SCALARS};
 use super::reduced::{Peaks, Reduced};
 use super::{Ensemble, EnsembleError};
-use crate::output::Error;
-use crate::output::part::{Header, read, write};
+use crate::output::part::{self, Header, encode};
+use crate::output::{Error, whole_file};
 use crate::stop_reason::StopReason;
 use std::path::Path;
 
@@ -15,7 +15,13 @@ impl Ensemble {
     /// # Errors
     /// [`EnsembleError::Output`]; an older file then stays.
     pub fn write(&self, reduced: &Reduced, path: &Path) -> Result<(), EnsembleError> {
-        Ok(write(path, &self.header(reduced), &encoded(reduced))?)
+        Ok(whole_file(path, |out| out.write_all(&self.to_bytes(reduced)))?)
+    }
+
+    /// What [`Ensemble::write`] writes.
+    #[must_use]
+    pub fn to_bytes(&self, reduced: &Reduced) -> Vec<u8> {
+        encode(&self.header(reduced), &numbers(reduced))
     }
 
     /// Reads what [`Ensemble::write`] wrote of this ensemble, with the same version of granflow, case and inputs.
@@ -23,9 +29,19 @@ impl Ensemble {
     /// # Errors
     /// [`EnsembleError::Output`] saying what is wrong with the file or which other ensemble it is of.
     pub fn read(&self, path: &Path) -> Result<Reduced, EnsembleError> {
-        let (header, bytes) = read(path, &self.origin)?;
+        let bytes =
+            std::fs::read(path).map_err(|source| Error::Io { path: path.into(), action: "read", source })?;
+        self.from_bytes(&bytes, path)
+    }
+
+    /// Takes what [`Ensemble::to_bytes`] gave, which messages call by this name.
+    ///
+    /// # Errors
+    /// As [`Ensemble::read`].
+    pub fn from_bytes(&self, bytes: &[u8], path: &Path) -> Result<Reduced, EnsembleError> {
+        let (header, bytes) = part::decode(path, bytes, &self.origin)?;
         let mut reduced = self.empty();
-        decode(&mut Bytes(&bytes), &header, self.plan.columns().len(), &mut reduced).ok_or_else(|| {
+        decode(&mut Bytes(bytes), &header, self.plan.columns().len(), &mut reduced).ok_or_else(|| {
             Error::Damaged {
                 path: path.to_owned(),
                 problem: "its numbers are not those that it announces; compute this part again".to_owned(),
@@ -49,20 +65,20 @@ impl Ensemble {
 }
 
 /// The numbers of what was added up, little endian.
-fn encoded(reduced: &Reduced) -> Vec<u8> {
+fn numbers(reduced: &Reduced) -> Vec<u8> {
     let mut bytes = Vec::new();
     let counts = |list: &[u32], bytes: &mut Vec<u8>| list.iter().for_each(|v| bytes.extend(v.to_le_bytes()));
-    let numbers = |list: &[f64], bytes: &mut Vec<u8>| list.iter().for_each(|v| bytes.extend(v.to_le_bytes()));
+    let doubles = |list: &[f64], bytes: &mut Vec<u8>| list.iter().for_each(|v| bytes.extend(v.to_le_bytes()));
     for row in reduced.rows.values() {
-        numbers(&row.values, &mut bytes);
+        doubles(&row.values, &mut bytes);
         if let Ok((_, scalars)) = &row.ended {
-            numbers(scalars, &mut bytes);
+            doubles(scalars, &mut bytes);
         }
     }
     counts(&reduced.reached, &mut bytes);
     for Peaks { sums, largest, above, classes, .. } in &reduced.peaks {
         sums.iter().for_each(|sum| bytes.extend(sum.to_le_bytes()));
-        numbers(largest, &mut bytes);
+        doubles(largest, &mut bytes);
         above.iter().for_each(|above| counts(above, &mut bytes));
         for Classes { first, counts: own } in classes {
             counts(&[*first, own.len() as u32], &mut bytes);

@@ -2,12 +2,11 @@
 //!
 //! Layout: the line `granflow part 1`, a u32 length, that many bytes of JSON, the numbers, the CRC-32 of all before; little endian.
 
+use super::Error;
 use super::checkpoint::Origin;
 use super::inputs::difference;
-use super::{Error, Summed, whole_file};
 use crate::stop_reason::StopReason;
 use serde::{Deserialize, Serialize};
-use std::io::Write;
 use std::path::Path;
 
 const MAGIC: &[u8] = b"granflow part 1\n";
@@ -25,45 +24,34 @@ pub(crate) struct Header {
     pub ended: Vec<(u32, StopReason)>,
 }
 
-/// Writes a part as a whole.
-pub(crate) fn write(path: &Path, header: &Header, numbers: &[u8]) -> Result<(), Error> {
+/// A part as bytes.
+pub(crate) fn encode(header: &Header, numbers: &[u8]) -> Vec<u8> {
     let header = serde_json::to_vec(header).expect("names and counts are JSON");
-    whole_file(path, |out| {
-        let mut out = Summed::new(out);
-        out.write_all(MAGIC)?;
-        out.write_all(&(header.len() as u32).to_le_bytes())?;
-        out.write_all(&header)?;
-        out.write_all(numbers)?;
-        out.finish().map(drop)
-    })
+    let mut bytes = [MAGIC, &(header.len() as u32).to_le_bytes(), &header, numbers].concat();
+    bytes.extend(crc32fast::hash(&bytes).to_le_bytes());
+    bytes
 }
 
-/// Reads a part of this origin: header and numbers.
-pub(crate) fn read(path: &Path, origin: &Origin) -> Result<(Header, Vec<u8>), Error> {
-    let mut bytes = std::fs::read(path).map_err(Error::io(path, "read"))?;
+/// Header and numbers of a part of this origin; messages name `path`.
+pub(crate) fn decode<'a>(path: &Path, bytes: &'a [u8], origin: &Origin) -> Result<(Header, &'a [u8]), Error> {
     let altered = || Error::damaged(path, "the part is truncated or altered; compute it again");
-    if !bytes.starts_with(MAGIC) {
-        return Err(Error::damaged(
-            path,
-            "this is no part of an ensemble; `granflow ensemble --part 1/16` writes one",
-        ));
-    }
-    let front = MAGIC.len() + 4;
-    if bytes.len() < front + 4 {
+    let Some(rest) = bytes.strip_prefix(MAGIC) else {
+        let problem = "this is no part of an ensemble; `granflow ensemble --part 1/16` writes one";
+        return Err(Error::damaged(path, problem));
+    };
+    let (_, crc) = bytes.split_last_chunk::<4>().ok_or_else(altered)?;
+    if *crc != crc32fast::hash(&bytes[..bytes.len() - 4]).to_le_bytes() {
         return Err(altered());
     }
-    let crc = bytes.split_off(bytes.len() - 4);
-    if crc != crc32fast::hash(&bytes).to_le_bytes() {
-        return Err(altered());
-    }
-    let length =
-        bytes[MAGIC.len()..front].try_into().map_or(usize::MAX, |four| u32::from_le_bytes(four) as usize);
-    let header = bytes.get(front..front.saturating_add(length)).ok_or_else(altered)?;
+    let (rest, _) = rest.split_last_chunk::<4>().ok_or_else(altered)?;
+    let (length, rest) = rest.split_first_chunk().ok_or_else(altered)?;
+    let (header, numbers) =
+        rest.split_at_checked(u32::from_le_bytes(*length) as usize).ok_or_else(altered)?;
     let header: Header = serde_json::from_slice(header).map_err(|error| {
         Error::damaged(path, format!("its head cannot be read: {error}; compute it again"))
     })?;
     header.check(path, origin)?;
-    Ok((header, bytes.split_off(front + length)))
+    Ok((header, numbers))
 }
 
 impl Header {
