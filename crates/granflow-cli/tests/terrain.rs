@@ -81,7 +81,8 @@ fn beside_each_raster_with_a_figure_stands_its_style_for_qgis() {
         let style = std::fs::read_to_string(raster.with_extension("qml")).expect("a style");
         assert!(raster.exists() && style.contains("type=\"singlebandpseudocolor\""), "{name}");
         // thicknesses begin at the threshold that is drawn, other maps where anything came
-        let above = if matches!(name, "peak_thickness" | "deposit") { "max=\"0.01\"" } else { "max=\"-0.5\"" };
+        let above =
+            if matches!(name, "peak_thickness" | "deposit") { "max=\"0.01\"" } else { "max=\"-0.5\"" };
         assert!(style.contains(above), "{name}: {style}");
     }
 }

@@ -39,11 +39,13 @@ impl Classes {
         }
         if class < self.first {
             let more = (self.first - class) as usize;
-            self.counts.splice(0..0, std::iter::repeat_n(0, more));
+            self.counts = std::iter::repeat_n(0, more).chain(self.counts.iter().copied()).collect();
             self.first = class;
         }
         let at = (class - self.first) as usize;
         if at >= self.counts.len() {
+            // There are as many of these lists as cells: none has room to spare.
+            self.counts.reserve_exact(at + 1 - self.counts.len());
             self.counts.resize(at + 1, 0);
         }
         self.counts[at] += count;

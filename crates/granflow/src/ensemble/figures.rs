@@ -159,11 +159,7 @@ impl Ensemble {
             "Shares and means are of the members that were computed to their end; a member that did not reach a cell counts there with 0."
                 .to_owned(),
         ];
-        let case = Section {
-            title: "Case".to_owned(),
-            code: run.text(),
-            ..Section::default()
-        };
+        let case = Section { title: "Case".to_owned(), code: run.text(), ..Section::default() };
         let maps = Section { title: "Maps".to_owned(), figures, ..Section::default() };
         let numbers = Section { title: "Numbers".to_owned(), text, tables, ..Section::default() };
         Ok(write_index(path, &run.title, &[], &[numbers, maps, case])?)

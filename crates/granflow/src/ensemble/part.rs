@@ -4,9 +4,10 @@ use super::classes::Classes;
 use super::member::{Row, SCALARS};
 use super::reduced::{Peaks, Reduced};
 use super::{Ensemble, EnsembleError};
-use crate::output::part::{self, Header, encode};
+use crate::output::part::{self, Header};
 use crate::output::{Error, whole_file};
 use crate::stop_reason::StopReason;
+use std::io::{self, Write};
 use std::path::Path;
 
 impl Ensemble {
@@ -15,13 +16,20 @@ impl Ensemble {
     /// # Errors
     /// [`EnsembleError::Output`]; an older file then stays.
     pub fn write(&self, reduced: &Reduced, path: &Path) -> Result<(), EnsembleError> {
-        Ok(whole_file(path, |out| out.write_all(&self.to_bytes(reduced)))?)
+        Ok(whole_file(path, |out| self.encode(reduced, out))?)
     }
 
     /// What [`Ensemble::write`] writes.
     #[must_use]
     pub fn to_bytes(&self, reduced: &Reduced) -> Vec<u8> {
-        encode(&self.header(reduced), &numbers(reduced))
+        let mut bytes = Vec::new();
+        self.encode(reduced, &mut bytes).expect("memory takes everything");
+        bytes
+    }
+
+    /// Writes number by number: what was added up is a good share of the memory.
+    fn encode(&self, reduced: &Reduced, out: &mut dyn Write) -> io::Result<()> {
+        part::encode(&self.header(reduced), out, |out| numbers(reduced, out))
     }
 
     /// Reads what [`Ensemble::write`] wrote of this ensemble, with the same version of granflow, case and inputs.
@@ -65,27 +73,32 @@ impl Ensemble {
 }
 
 /// The numbers of what was added up, little endian.
-fn numbers(reduced: &Reduced) -> Vec<u8> {
-    let mut bytes = Vec::new();
-    let counts = |list: &[u32], bytes: &mut Vec<u8>| list.iter().for_each(|v| bytes.extend(v.to_le_bytes()));
-    let doubles = |list: &[f64], bytes: &mut Vec<u8>| list.iter().for_each(|v| bytes.extend(v.to_le_bytes()));
+fn numbers(reduced: &Reduced, out: &mut dyn Write) -> io::Result<()> {
     for row in reduced.rows.values() {
-        doubles(&row.values, &mut bytes);
+        doubles(&row.values, out)?;
         if let Ok((_, scalars)) = &row.ended {
-            doubles(scalars, &mut bytes);
+            doubles(scalars, out)?;
         }
     }
-    counts(&reduced.reached, &mut bytes);
+    counts(&reduced.reached, out)?;
     for Peaks { sums, largest, above, classes, .. } in &reduced.peaks {
-        sums.iter().for_each(|sum| bytes.extend(sum.to_le_bytes()));
-        doubles(largest, &mut bytes);
-        above.iter().for_each(|above| counts(above, &mut bytes));
+        sums.iter().try_for_each(|sum| out.write_all(&sum.to_le_bytes()))?;
+        doubles(largest, out)?;
+        above.iter().try_for_each(|above| counts(above, out))?;
         for Classes { first, counts: own } in classes {
-            counts(&[*first, own.len() as u32], &mut bytes);
-            counts(own, &mut bytes);
+            counts(&[*first, own.len() as u32], out)?;
+            counts(own, out)?;
         }
     }
-    bytes
+    Ok(())
+}
+
+fn counts(list: &[u32], out: &mut dyn Write) -> io::Result<()> {
+    list.iter().try_for_each(|count| out.write_all(&count.to_le_bytes()))
+}
+
+fn doubles(list: &[f64], out: &mut dyn Write) -> io::Result<()> {
+    list.iter().try_for_each(|number| out.write_all(&number.to_le_bytes()))
 }
 
 /// What is still to be read.
@@ -119,7 +132,9 @@ impl Bytes<'_> {
         if count * 4 > self.0.len() {
             return None;
         }
-        Some(Classes { first, counts: (0..count).map(|_| self.count()).collect::<Option<_>>()? })
+        let mut counts = vec![0; count];
+        self.fill(&mut counts, Self::count)?;
+        Some(Classes { first, counts })
     }
 }
 

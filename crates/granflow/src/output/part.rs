@@ -2,11 +2,12 @@
 //!
 //! Layout: the line `granflow part 1`, a u32 length, that many bytes of JSON, the numbers, the CRC-32 of all before; little endian.
 
-use super::Error;
 use super::checkpoint::Origin;
 use super::inputs::difference;
+use super::{Error, Summed};
 use crate::stop_reason::StopReason;
 use serde::{Deserialize, Serialize};
+use std::io::{self, BufWriter, Write};
 use std::path::Path;
 
 const MAGIC: &[u8] = b"granflow part 1\n";
@@ -24,12 +25,19 @@ pub(crate) struct Header {
     pub ended: Vec<(u32, StopReason)>,
 }
 
-/// A part as bytes.
-pub(crate) fn encode(header: &Header, numbers: &[u8]) -> Vec<u8> {
-    let header = serde_json::to_vec(header).expect("names and counts are JSON");
-    let mut bytes = [MAGIC, &(header.len() as u32).to_le_bytes(), &header, numbers].concat();
-    bytes.extend(crc32fast::hash(&bytes).to_le_bytes());
-    bytes
+/// Writes a part, its numbers by `numbers`.
+pub(crate) fn encode(
+    header: &Header,
+    out: &mut dyn Write,
+    numbers: impl FnOnce(&mut dyn Write) -> io::Result<()>,
+) -> io::Result<()> {
+    let header = serde_json::to_vec(header)?;
+    let mut out = BufWriter::new(Summed::new(out));
+    out.write_all(MAGIC)?;
+    out.write_all(&(header.len() as u32).to_le_bytes())?;
+    out.write_all(&header)?;
+    numbers(&mut out)?;
+    out.into_inner().map_err(io::IntoInnerError::into_error)?.finish().map(drop)
 }
 
 /// Header and numbers of a part of this origin; messages name `path`.
