@@ -9,13 +9,15 @@ mod distribution;
 mod normal;
 mod parameter;
 mod points;
+mod vary;
 
 pub use parameter::{Column, Drawn};
 
 use crate::fault::CaseError;
 use crate::look::Look;
-use parameter::{Parameter, Vary};
+use parameter::Parameter;
 use points::Points;
+use vary::Vary;
 
 /// More members than this are refused.
 pub const MOST_MEMBERS: u32 = 1_000_000;

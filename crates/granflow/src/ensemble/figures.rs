@@ -9,6 +9,7 @@ use crate::output::figures::{
 use crate::output::outlines::rings;
 use crate::output::report::{Figure, Section, Table, write_index};
 use crate::output::style::Style;
+use crate::raster::Raster;
 use rayon::prelude::*;
 use std::path::Path;
 
@@ -71,36 +72,8 @@ impl Ensemble {
         let shown: Vec<f64> =
             map.values.iter().map(|value| if value.is_nan() { 0.0 } else { *value }).collect();
         if let Some(raster) = plane.domain.raster() {
-            let areas = plane.domain.outlines(&Vec::new());
-            let least = 4.0 * raster.cell * raster.cell;
-            let release = areas.iter().find(|area| area.name == "release");
-            let release = release.map_or(Vec::new(), |area| rings(&area.area, least));
-            let name = |k| if k == 0 { "release of the case" } else { "" };
-            let outline = |(k, points): (usize, &'_ Vec<[f64; 2]>)| (name(k), points.clone());
-            let lines: Vec<_> = release.iter().enumerate().map(outline).collect();
-            let outlines: Vec<Outline> = lines
-                .iter()
-                .map(|(name, points)| Outline { name, points, closed: true, ..Outline::default() })
-                .collect();
-            let extent = Extent {
-                nx: raster.columns,
-                ny: raster.rows,
-                west: raster.west,
-                south: raster.south,
-                cell: raster.cell,
-            };
-            let overlay = Some(Overlay { values: &shown, quantity, threshold: above, colours });
-            let (bed, outlines) = (raster.values.as_slice(), outlines.as_slice());
-            return Mountain {
-                title,
-                subtitle: &subtitle,
-                extent,
-                bed,
-                overlay,
-                outlines,
-                ..Default::default()
-            }
-            .draw();
+            let overlay = Overlay { values: &shown, quantity, threshold: above, colours };
+            return self.on_mountain(raster, [title, &subtitle], overlay);
         }
         if plane.dimensions() > 1 {
             let (x, y) = (Axis::new("x", length), Axis::new("y", length));
@@ -122,6 +95,30 @@ impl Ensemble {
         let curves = [Curve { x: &plane.x, y: &shown, ..Curve::default() }];
         let (x, y) = (Axis::new("x", length), Axis::new(&label, &unit));
         Profiles { title, subtitle: &subtitle, x, y, curves: &curves, ..Default::default() }.draw()
+    }
+
+    /// A map on the shaded mountain, with the release of the case.
+    fn on_mountain(
+        &self,
+        raster: &Raster,
+        [title, subtitle]: [&str; 2],
+        overlay: Overlay,
+    ) -> Result<Picture, FigureError> {
+        let Raster { columns: nx, rows: ny, west, south, cell, .. } = *raster;
+        let areas = self.plane().domain.outlines(&Vec::new());
+        let release = areas.iter().find(|area| area.name == "release");
+        let release = release.map_or(Vec::new(), |area| rings(&area.area, 4.0 * cell * cell));
+        let outlines: Vec<Outline> = release
+            .iter()
+            .enumerate()
+            .map(|(k, points)| {
+                let name = if k == 0 { "release of the case" } else { "" };
+                Outline { name, points, closed: true, ..Outline::default() }
+            })
+            .collect();
+        let extent = Extent { nx, ny, west, south, cell };
+        let (bed, overlay, outlines) = (raster.values.as_slice(), Some(overlay), outlines.as_slice());
+        Mountain { title, subtitle, extent, bed, overlay, outlines, ..Default::default() }.draw()
     }
 
     /// `report.html`: the ensemble on one page.
