@@ -58,9 +58,41 @@ impl Case {
     /// [`CaseError`] for the first thing that is wrong; its kind is `File` where a file cannot be read.
     pub fn check(&self, files: &dyn FileAccess) -> Result<Checked, CaseError> {
         let files = Asked::new(files);
-        let (mut run, kind) = self.words.check(&Look { source: &self.source, files: &files })?;
+        let look = Look { source: &self.source, files: &files };
+        let (mut run, kind) = self.words.check(&look)?;
+        if let Some((words, pressure)) = self.words.ensemble() {
+            let ensemble = words.check(&look, pressure)?;
+            for (place, change) in ensemble.trials() {
+                self.attempt(&look, &place, change)?;
+            }
+            let note = "the case has an [ensemble]: `granflow ensemble` computes its members, `granflow run` this one case";
+            run.notes.push(note.to_owned());
+            run.ensemble = Some(Arc::new(ensemble));
+        }
         run.inputs = files.into_names();
         Ok(Checked { run, kind })
+    }
+
+    /// The case with overrides laid over it, as a member of an ensemble has them, checked; of the ensemble itself nothing is asked.
+    ///
+    /// # Errors
+    /// As [`Case::parse_with`] and [`Case::check`].
+    pub fn check_with(&self, overrides: &[String], files: &dyn FileAccess) -> Result<Checked, CaseError> {
+        let files = Asked::new(files);
+        let source = self.source.with(overrides)?;
+        let words = kinds::read(&source)?;
+        let (mut run, kind) = words.check(&Look { source: &source, files: &files })?;
+        run.inputs = files.into_names();
+        Ok(Checked { run, kind })
+    }
+
+    /// A value of an ensemble must be one that the case takes.
+    fn attempt(&self, look: &Look, place: &str, change: String) -> Result<(), CaseError> {
+        let Err(error) = self.check_with(std::slice::from_ref(&change), look.files) else { return Ok(()) };
+        let fault = look.source.fault(place, format!("the case does not take {change}: {}", error.message()));
+        let cure = "give ends (uniform, or min and max) within what the case takes";
+        let fault = error.help_lines().iter().fold(fault, |fault, line| fault.help(line.as_str())).help(cure);
+        Err(if error.kind() == super::fault::CaseErrorKind::File { fault.file() } else { fault })
     }
 
     /// The text of the case file, with the overrides as comment lines at the end.

@@ -17,6 +17,14 @@ pub trait FileAccess {
     /// What is wrong with the file, naming it.
     fn outlines(&self, path: &Path) -> Result<Box<dyn Outline>, String>;
 
+    /// The numbers that an attribute of the features of a file holds, in their order, none negative.
+    ///
+    /// # Errors
+    /// What is wrong with the file, naming it.
+    fn numbers(&self, path: &Path, attribute: &str) -> Result<Vec<f64>, String> {
+        Err(format!("{}: the attribute `{attribute}` cannot be read here", path.display()))
+    }
+
     /// The kinds of files that a case may ask for.
     fn kinds(&self) -> &'static [FileKind] {
         &[]
@@ -113,6 +121,11 @@ impl FileAccess for Asked<'_> {
     fn outlines(&self, path: &Path) -> Result<Box<dyn Outline>, String> {
         self.note(path);
         self.files.outlines(path)
+    }
+
+    fn numbers(&self, path: &Path, attribute: &str) -> Result<Vec<f64>, String> {
+        self.note(path);
+        self.files.numbers(path, attribute)
     }
 
     fn kinds(&self) -> &'static [FileKind] {

@@ -7,6 +7,7 @@ use schemars::{JsonSchema, Schema, SchemaGenerator};
 use serde::Serialize;
 use serde::de::DeserializeOwned;
 
+use super::ensemble;
 use super::fault::CaseError;
 use super::file_kind::FileKind;
 use super::look::Look;
@@ -47,6 +48,8 @@ pub(crate) trait Words: Debug + Send + Sync {
     fn check(&self, look: &Look) -> Result<(RunPlan, Kind), CaseError>;
     /// The words as TOML.
     fn to_toml(&self) -> String;
+    /// Many runs of the case, if it asks for them, and whether they have a pressure.
+    fn ensemble(&self) -> Option<(&ensemble::Words, bool)>;
 }
 
 /// A kind's struct of words.
@@ -57,6 +60,10 @@ pub(crate) trait Written:
     const ABOUT: About;
     /// Checks and evaluates the case.
     fn check(&self, look: &Look) -> Result<(RunPlan, Kind), CaseError>;
+    /// Many runs of the case, if it asks for them, and whether they have a pressure.
+    fn ensemble(&self) -> Option<(&ensemble::Words, bool)> {
+        None
+    }
 }
 
 impl<W: Written> Words for W {
@@ -66,6 +73,10 @@ impl<W: Written> Words for W {
 
     fn to_toml(&self) -> String {
         toml::to_string(self).unwrap_or_default()
+    }
+
+    fn ensemble(&self) -> Option<(&ensemble::Words, bool)> {
+        Written::ensemble(self)
     }
 }
 

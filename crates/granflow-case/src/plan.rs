@@ -1,8 +1,10 @@
 //! What every kind of case says of its run: steps, ends, frames, files.
 
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 
 use super::durations::Durations;
+use super::ensemble::Ensemble;
 use super::fault::CaseError;
 use super::file_kind::FileKind;
 use super::precision::Precision;
@@ -30,6 +32,8 @@ pub struct RunPlan {
     pub watched: Watched,
     /// What is allowed but may surprise, one sentence each.
     pub notes: Vec<String>,
+    /// Many runs of the case, if it asks for them.
+    pub ensemble: Option<Arc<Ensemble>>,
     /// The files that the case names, seen from the working folder.
     pub inputs: Vec<PathBuf>,
     /// Where the case was read from.

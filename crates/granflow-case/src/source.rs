@@ -58,14 +58,7 @@ impl Source {
     pub(crate) fn read(name: &str, text: &str, overrides: &[String]) -> Result<Self, CaseError> {
         let mut source = Self::default();
         source.add(name.to_owned(), text.to_owned(), Vec::new());
-        for argument in overrides {
-            let name = format!("--set {argument}");
-            let (path, written) = overrides::split(&name, argument)?;
-            source.add(name, written, path);
-        }
-        let mut places = BTreeMap::new();
-        note_table(&mut places, "", source.document()?.get_ref());
-        source.places = places;
+        source.lay(overrides)?;
         Ok(source)
     }
 
@@ -126,6 +119,45 @@ impl Source {
             document = inner;
         }
         document.get(last)?.get_ref().as_str().map(str::to_owned)
+    }
+
+    /// The value under a key, its parts divided by dots; a number counts the entries of a list from 0, as in an override.
+    pub(crate) fn value(&self, key: &str) -> Option<toml::Value> {
+        let mut value = toml::Value::Table(resolve::table(self.document().ok()?.into_inner()));
+        for step in key.split('.') {
+            value = match value {
+                toml::Value::Table(mut table) => table.remove(step)?,
+                toml::Value::Array(mut list) => {
+                    let index: usize = step.parse().ok()?;
+                    (index < list.len()).then(|| list.swap_remove(index))?
+                }
+                _ => return None,
+            };
+        }
+        Some(value)
+    }
+
+    /// The same case with more overrides laid over it.
+    ///
+    /// # Errors
+    /// As [`Source::read`].
+    pub(crate) fn with(&self, overrides: &[String]) -> Result<Self, CaseError> {
+        let mut source = Self { pieces: self.pieces.clone(), places: BTreeMap::new() };
+        source.lay(overrides)?;
+        Ok(source)
+    }
+
+    /// Adds overrides, and notes where each key stands.
+    fn lay(&mut self, overrides: &[String]) -> Result<(), CaseError> {
+        for argument in overrides {
+            let name = format!("--set {argument}");
+            let (path, written) = overrides::split(&name, argument)?;
+            self.add(name, written, path);
+        }
+        let mut places = BTreeMap::new();
+        note_table(&mut places, "", self.document()?.get_ref());
+        self.places = places;
+        Ok(())
     }
 
     /// The folder of the case file.

@@ -3,6 +3,7 @@ use crate::chute::InitialState;
 use granflow_model::savage_hutter::friction::AnyLaw;
 use std::path::Path;
 
+mod ensemble;
 mod resolved;
 mod sandpile;
 
@@ -192,7 +193,7 @@ fn a_mountain() {
     assert_eq!((mountain.dem, mountain.curvature), (folder.path().join("a.tif"), None));
     assert_eq!((mountain.material.gravity, mountain.scheme.film), (9.81, 1e-4));
     assert_eq!(mountain.scheme.name, terrain::TerrainScheme::EnergyStable2);
-    let thickness = terrain::Thickness::Attribute(terrain::Attribute { attribute: "d".into() });
+    let thickness = terrain::Thickness::Attribute(terrain::Attribute { attribute: "d".into(), factor: None });
     let path = folder.path().join("r.shp");
     assert_eq!(mountain.releases[0].extent, terrain::Extent::Polygons { path, thickness });
     assert_eq!(mountain.releases[0].measured, terrain::Measured::Vertical);

@@ -10,6 +10,7 @@ mod bench;
 mod check;
 mod compare;
 mod demo;
+mod ensemble;
 mod failure;
 mod interrupt;
 mod mountain;
@@ -72,6 +73,14 @@ enum Command {
         #[arg(long, short)]
         quiet: bool,
     },
+    /// Computes many runs of a case with some of its values drawn: probabilities, percentiles, tables
+    #[command(
+        after_help = "The case says under [ensemble] how many members and which values differ. Ctrl-C keeps what is done, and the same command goes on. A member that fails is booked, and the rest goes on; exit status 3 if all fail."
+    )]
+    Ensemble(ensemble::Arguments),
+    /// Puts parts of an ensemble together, which may have been computed on many machines
+    #[command(after_help = "The result is the same, bit for bit, as that of one run on one machine.")]
+    Merge(ensemble::MergeArguments),
     /// Reads a case and says what would be computed; computes nothing
     Check {
         /// The case file
@@ -157,6 +166,8 @@ fn act(command: Command) -> Result<(), Failure> {
             let case = read(&case, &set)?;
             run::run(case, &run::RunOptions { out, threads, resume, quiet })
         }
+        Command::Ensemble(arguments) => ensemble::ensemble(&arguments),
+        Command::Merge(arguments) => ensemble::merge(&arguments),
         Command::Check { case, set } => check::check(&Case::read_with(&case, &set)?),
         Command::New { list: true, .. } => new::list(),
         Command::New { kind: None, .. } => {

@@ -38,7 +38,7 @@ pub struct Chapter<'a> {
 impl Chapter<'_> {
     fn section(self) -> Section {
         let figures = self.pictures.into_iter().map(|picture| picture.figure).collect();
-        Section { title: self.title, text: self.text, tables: self.tables, figures }
+        Section { title: self.title, text: self.text, tables: self.tables, figures, ..Section::default() }
     }
 }
 

@@ -101,7 +101,7 @@ fn attempt(case: Checked, options: &RunOptions, stop: &AtomicBool) -> Result<Fin
 }
 
 /// The command, in which what is no text is marked as such.
-fn command() -> String {
+pub fn command() -> String {
     std::env::args_os().map(|word| word.to_string_lossy().into_owned()).collect::<Vec<_>>().join(" ")
 }
 

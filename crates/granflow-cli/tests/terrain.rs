@@ -70,6 +70,24 @@ fn check_shows_systems_heights_steps_volume_and_what_was_converted() {
 }
 
 #[test]
+fn beside_each_raster_with_a_figure_stands_its_style_for_qgis() {
+    let folder = tempfile::tempdir().expect("a folder");
+    written(folder.path(), &[]);
+    let set = "output.files=[\"geotiff\"]";
+    let output = granflow(folder.path(), &["run", "case.toml", "--set", set, "--set", "time.steps=40"]);
+    assert_eq!(output.status.code(), Some(0), "{}", told(&output));
+    for name in ["peak_thickness", "deposit", "peak_speed", "peak_pressure", "arrival_time"] {
+        let raster = folder.path().join(format!("case/rasters/{name}.tif"));
+        let style = std::fs::read_to_string(raster.with_extension("qml")).expect("a style");
+        assert!(raster.exists() && style.contains("type=\"singlebandpseudocolor\""), "{name}");
+        // thicknesses begin at the threshold that is drawn, other maps where anything came
+        let above =
+            if matches!(name, "peak_thickness" | "deposit") { "max=\"0.01\"" } else { "max=\"-0.5\"" };
+        assert!(style.contains(above), "{name}: {style}");
+    }
+}
+
+#[test]
 fn check_and_run_warn_of_what_no_ground_has() {
     let folder = tempfile::tempdir().expect("a folder");
     written(folder.path(), &[([15, 3], 0.0)]);

@@ -8,6 +8,7 @@ mod inlets;
 mod outlines;
 mod sparse;
 mod table;
+mod thickness;
 mod vector;
 mod zones;
 
@@ -17,6 +18,7 @@ pub use error::{Form, ReleaseError};
 pub use inlets::along;
 pub use outlines::Outlines;
 pub use sparse::Sparse;
+pub use thickness::Thickness;
 pub use vector::Layer;
 pub(crate) use vector::named as named_system;
 
@@ -28,16 +30,6 @@ use rstar::primitives::{GeomWithData, Rectangle};
 use rstar::{AABB, RTree};
 use std::collections::BTreeMap;
 use std::path::Path;
-use vector::Feature;
-
-/// Where the thickness of a polygon comes from.
-#[derive(Debug, Clone, PartialEq)]
-pub enum Thickness {
-    /// One thickness for all polygons \[m\].
-    Value(f64),
-    /// The attribute of this name, in metres.
-    Attribute(String),
-}
 
 /// The direction in which a thickness is measured.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -84,6 +76,16 @@ impl Layer {
     /// As [`polygons`], but for reading.
     pub fn thickness(self, thickness: &Thickness, template: &Raster) -> Result<Sparse, ReleaseError> {
         laid(self, thickness, template)
+    }
+
+    /// The numbers that an attribute holds, in the order of the features.
+    ///
+    /// # Errors
+    /// [`ReleaseError::Attribute`] for a missing attribute, [`ReleaseError::Thickness`] for what is no number or negative.
+    pub fn numbers(&self, attribute: &str) -> Result<Vec<f64>, ReleaseError> {
+        let from = Thickness::Attribute(attribute.to_owned());
+        let number = |(place, feature)| from.of(&self.name, (place, feature));
+        self.features.iter().enumerate().map(number).collect()
     }
 
     /// All polygons; where they overlap, each stands for itself.
@@ -155,8 +157,9 @@ fn laid(layer: Layer, thickness: &Thickness, template: &Raster) -> Result<Sparse
     let path = &*layer.name;
     same_system(&layer, template)?;
     let mut areas: Vec<(Polygon, f64)> = Vec::new();
-    for feature in layer.features {
-        let thickness = thickness_of(path, &feature, thickness)?;
+    thickness.fits(path, layer.features.len())?;
+    for (place, feature) in layer.features.into_iter().enumerate() {
+        let thickness = thickness.of(path, (place, &feature))?;
         let polygons = sound(path, feature.number, feature.polygons)?;
         areas.extend(polygons.into_iter().map(|polygon| (polygon, thickness)));
     }
@@ -240,40 +243,6 @@ pub fn carried(path: &Path, given: &Raster, template: &Raster) -> Result<Sparse,
         return Ok(height);
     }
     Err(ReleaseError::outside_as(Form::Raster, path, bounds, template, lost))
-}
-
-fn thickness_of(path: &Path, feature: &Feature, thickness: &Thickness) -> Result<f64, ReleaseError> {
-    let (value, found, name) = match thickness {
-        Thickness::Value(value) => (Some(*value), value.to_string(), "thickness"),
-        Thickness::Attribute(name) => {
-            let (name, text, value) = attribute(path, feature, name)?;
-            (value, text.to_string(), name)
-        }
-    };
-    match value.filter(|value: &f64| value.is_finite() && *value >= 0.0) {
-        Some(value) => Ok(value),
-        None => {
-            let (path, name) = (path.into(), name.to_string());
-            Err(ReleaseError::Thickness { path, feature: feature.number, name, found })
-        }
-    }
-}
-
-/// An attribute of a feature as the file spells its name, its text, and the number that this is.
-fn attribute<'a>(
-    path: &Path,
-    feature: &'a Feature,
-    name: &str,
-) -> Result<(&'a str, &'a str, Option<f64>), ReleaseError> {
-    let same = |(other, _): &&(String, String)| other.eq_ignore_ascii_case(name);
-    let attributes = &feature.attributes;
-    let exact = attributes.iter().find(|(other, _)| other == name).or(attributes.iter().find(same));
-    let Some((name, text)) = exact else {
-        return Err(ReleaseError::attribute(path, name, attributes));
-    };
-    let text = text.trim();
-    let value = text.parse().ok().or_else(|| text.replacen(',', ".", 1).parse().ok());
-    Ok((name, text, value))
 }
 
 /// The parts of polygon `k` that polygons before it cover, each point once.

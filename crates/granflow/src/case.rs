@@ -1,7 +1,7 @@
 //! The case file of a run: what [`granflow_case`] reads, joined with the files of the world and the models.
 
 use crate::disk::Disk;
-use crate::models;
+use crate::models::{self, Shared};
 use crate::run::{Exceeded, Run, What};
 pub use crate::start_error::StartError;
 pub use granflow_case::*;
@@ -61,6 +61,13 @@ impl Case {
     pub fn check(&self) -> Result<Checked, CaseError> {
         self.0.check(&Disk).map(Checked)
     }
+    /// The case with overrides laid over it, as a member of its ensemble has them, checked.
+    ///
+    /// # Errors
+    /// As [`Case::read_with`] and [`Case::check`].
+    pub fn check_with(&self, overrides: &[String]) -> Result<Checked, CaseError> {
+        self.0.check_with(overrides, &Disk).map(Checked)
+    }
 }
 
 impl Checked {
@@ -79,8 +86,18 @@ impl Checked {
     /// # Errors
     /// [`StartError`] at the first file or key that cannot be used.
     pub fn start(self) -> Result<Box<dyn Run>, StartError> {
+        self.started(None)
+    }
+    /// As [`Checked::start`], for one of several runs on the same ground: that is read and fitted once.
+    ///
+    /// # Errors
+    /// As [`Checked::start`].
+    pub fn start_among(self, shared: &Shared) -> Result<Box<dyn Run>, StartError> {
+        self.started(Some(shared))
+    }
+    fn started(self, shared: Option<&Shared>) -> Result<Box<dyn Run>, StartError> {
         let granflow_case::Checked { run, kind } = self.0;
-        let mut started = models::start(&run, kind)?;
+        let mut started = models::start(&run, kind, shared)?;
         started.track_durations(&exceeded(&run.output.durations));
         Ok(started)
     }
@@ -90,7 +107,9 @@ impl Checked {
     /// As [`Checked::start`].
     pub fn describe(self) -> Result<Vec<(&'static str, String)>, StartError> {
         let granflow_case::Checked { run, kind } = self.0;
-        models::describe(&run, kind)
+        let mut lines = models::describe(&run, kind)?;
+        lines.extend(run.ensemble.iter().map(|ensemble| ("ensemble", ensemble.to_string())));
+        Ok(lines)
     }
 }
 

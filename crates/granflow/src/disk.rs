@@ -14,6 +14,12 @@ impl FileAccess for Disk {
         Ok(Box::new(Polygons(outlines)))
     }
 
+    #[cfg(feature = "geo")]
+    fn numbers(&self, path: &Path, attribute: &str) -> Result<Vec<f64>, String> {
+        let numbers = granflow_geo::release::Layer::read(path).and_then(|layer| layer.numbers(attribute));
+        numbers.map_err(|error| error.to_string())
+    }
+
     #[cfg(not(feature = "geo"))]
     fn outlines(&self, path: &Path) -> Result<Box<dyn Outline>, String> {
         Err(format!("{}: polygons need granflow's feature `geo`", path.display()))

@@ -77,6 +77,8 @@ mod check_value;
 pub mod compare;
 pub mod describe;
 mod disk;
+#[cfg(all(feature = "figures", feature = "geo"))]
+pub mod ensemble;
 mod entry;
 mod field;
 mod memory;

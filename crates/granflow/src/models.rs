@@ -17,12 +17,23 @@ pub static MODELS: &[&Model] = &[
     &hadeler_kuttler::MODEL,
 ];
 
-/// The run of a checked case.
-pub(crate) fn start(run: &RunPlan, kind: Kind) -> Result<Box<dyn Run>, StartError> {
+/// What was read for one run and serves others on the same ground too; it holds every ground that it was asked for.
+#[derive(Debug, Default)]
+pub struct Shared {
+    #[cfg(feature = "geo")]
+    mountains: savage_hutter::run::mountain::Mountains,
+}
+
+/// The run of a checked case; what others use too is kept in `shared`, where that is given.
+pub(crate) fn start(run: &RunPlan, kind: Kind, shared: Option<&Shared>) -> Result<Box<dyn Run>, StartError> {
+    #[cfg(not(feature = "geo"))]
+    let _ = shared;
     match kind {
         Kind::Chute(plan) => savage_hutter::run::chute::start(run, &plan),
         #[cfg(feature = "geo")]
-        Kind::Terrain(plan) => savage_hutter::run::terrain::start(run, &plan),
+        Kind::Terrain(plan) => {
+            savage_hutter::run::terrain::start(run, &plan, shared.map(|shared| &shared.mountains))
+        }
         #[cfg(not(feature = "geo"))]
         Kind::Terrain(_) => Err(StartError::Feature { feature: "geo" }),
         Kind::Sandpile(plan) => hadeler_kuttler::run::start::start(run, plan),

@@ -19,7 +19,13 @@ pub mod mark;
 pub mod netcdf;
 #[cfg(feature = "geo")]
 pub mod outlines;
+#[cfg(all(feature = "figures", feature = "geo"))]
+pub(crate) mod part;
+#[cfg(feature = "geo")]
+pub(crate) mod rasters;
 pub mod report;
+#[cfg(feature = "figures")]
+pub mod style;
 pub mod summary;
 pub mod tables;
 pub mod vtk;

@@ -5,6 +5,7 @@ mod error;
 mod files;
 mod format;
 pub(crate) mod formats;
+pub(crate) mod numbers;
 #[cfg(feature = "figures")]
 mod story;
 mod watched;

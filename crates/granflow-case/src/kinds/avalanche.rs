@@ -28,7 +28,7 @@ pub const GRAVITY: f64 = 9.81;
 pub(super) const MODEL: &str = "savage_hutter";
 
 /// Keys that not every model has and both kinds of avalanches know.
-pub(super) const KEYS: [&str; 9] = [
+pub(super) const KEYS: [&str; 10] = [
     "material",
     "scheme.film",
     "time.rest_speed",
@@ -38,6 +38,7 @@ pub(super) const KEYS: [&str; 9] = [
     "section",
     "output.series_every",
     "output.durations",
+    "ensemble",
 ];
 
 /// What `time.until` may be.
@@ -64,6 +65,7 @@ pub(super) fn plan(
         output,
         watched,
         inputs: Vec::new(),
+        ensemble: None,
         source: look.source.clone(),
     }
 }

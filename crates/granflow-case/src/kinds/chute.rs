@@ -6,6 +6,7 @@ use serde::{Deserialize, Serialize};
 use super::avalanche::{self, EarthPressure, Friction, InSpace, Material, Method, SchemeName};
 use super::{About, Foreign, Kind, Written};
 use crate::boundary::{Boundary, Side};
+use crate::ensemble;
 use crate::fault::CaseError;
 use crate::grid::{Axis, Grid, Points};
 use crate::look::Look;
@@ -107,6 +108,9 @@ pub(crate) struct Words {
     /// Lines through which the passing mass is counted.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     section: Vec<SectionWords>,
+    /// Many runs of this case, for `granflow ensemble`.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    ensemble: Option<ensemble::Words>,
 }
 
 /// A regular grid along x, and along y if the case is two-dimensional, in the case's unit of length.
@@ -229,6 +233,10 @@ impl Written for Words {
         });
         Ok((run, kind))
     }
+
+    fn ensemble(&self) -> Option<(&ensemble::Words, bool)> {
+        self.ensemble.as_ref().map(|words| (words, false))
+    }
 }
 
 impl Words {
@@ -338,10 +346,26 @@ const STATE: f64 = 24.0;
 const WRITTEN: Defaults = Defaults { files: ON_A_GRID, precision: Precision::F64, threshold: THRESHOLD };
 
 /// Keys that not every model has.
-const KEYS: [&str; 13] = {
-    let [material, film, rest_speed, trickle, stop, gauge, section, series, durations] = avalanche::KEYS;
+const KEYS: [&str; 14] = {
+    let [material, film, rest_speed, trickle, stop, gauge, section, series, durations, ensemble] =
+        avalanche::KEYS;
     let [h, u, v] = ["initial.thickness", "initial.velocity_x", "initial.velocity_y"];
-    [material, film, rest_speed, trickle, stop, gauge, section, series, durations, "grid.boundary", h, u, v]
+    [
+        material,
+        film,
+        rest_speed,
+        trickle,
+        stop,
+        gauge,
+        section,
+        series,
+        durations,
+        ensemble,
+        "grid.boundary",
+        h,
+        u,
+        v,
+    ]
 };
 
 /// Keys of other kinds.

@@ -155,6 +155,7 @@ impl Written for Words {
             output,
             notes,
             inputs: Vec::new(),
+            ensemble: None,
             source: look.source.clone(),
         };
         let kind = Kind::Sandpile(Plan {

@@ -7,6 +7,7 @@ use serde::{Deserialize, Serialize};
 
 use super::avalanche::{self, EarthPressure, Friction, Material, Method, Parameter, SchemeName};
 use super::{About, Foreign, Kind, Written};
+use crate::ensemble;
 use crate::fault::CaseError;
 use crate::look::Look;
 use crate::output::{Defaults, Output};
@@ -24,7 +25,7 @@ use words::Elevation;
 
 pub use entrainment::Entrainment;
 pub use inflow::{Hydrograph, Inflow, Over};
-pub use release::{Attribute, Cap, Extent, Measured, Release, Starts, Thickness};
+pub use release::{Attribute, Cap, Extent, Features, Measured, Release, Starts, Thickness};
 
 /// The film of a case that says none \[m\]: a layer of a tenth of a millimetre, thinner than a grain, does not flow.
 pub const FILM: f64 = 1e-4;
@@ -116,6 +117,9 @@ pub(crate) struct Words {
     /// Lines through which the passing mass is counted.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     section: Vec<SectionWords>,
+    /// Many runs of this case, for `granflow ensemble`.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    ensemble: Option<ensemble::Words>,
 }
 
 /// The material.
@@ -202,6 +206,10 @@ impl Written for Words {
         });
         Ok((run, kind))
     }
+
+    fn ensemble(&self) -> Option<(&ensemble::Words, bool)> {
+        self.ensemble.as_ref().map(|words| (words, true))
+    }
 }
 
 impl OnTerrain {
@@ -255,8 +263,9 @@ const WRITTEN: Defaults = Defaults {
 };
 
 /// Keys that not every model has.
-const KEYS: [&str; 13] = {
-    let [material, film, rest_speed, trickle, stop, gauge, section, series, durations] = avalanche::KEYS;
+const KEYS: [&str; 14] = {
+    let [material, film, rest_speed, trickle, stop, gauge, section, series, durations, ensemble] =
+        avalanche::KEYS;
     [
         material,
         film,
@@ -267,6 +276,7 @@ const KEYS: [&str; 13] = {
         section,
         series,
         durations,
+        ensemble,
         "terrain",
         "release",
         "inflow",

@@ -1,6 +1,7 @@
 //! Zones: what an attribute of polygons says of each cell.
 
-use super::{Layer, ReleaseError, attribute, coverage, same_system, sound};
+use super::thickness::attribute;
+use super::{Layer, ReleaseError, coverage, same_system, sound};
 use crate::raster::Raster;
 use geo::{BoundingRect, MultiPolygon, unary_union};
 

@@ -15,7 +15,10 @@ use std::sync::Arc;
 #[cfg(feature = "figures")]
 use super::{drawing::Drawing, result_file::ResultFile, view::View};
 #[cfg(feature = "figures")]
-use crate::output::figures::{FigureError, Picture};
+use crate::output::{
+    figures::{FigureError, Picture},
+    style::Style,
+};
 
 /// Maps by the names of their quantities, x fastest, the first row in the south.
 pub type Maps = Vec<(&'static str, Vec<f64>)>;
@@ -201,6 +204,15 @@ pub trait Pictures: fmt::Debug + Sync {
 
     /// The standard figures.
     fn figures<'a>(&self, view: &'a View<'a>, domain: &'a dyn Domain) -> Vec<Drawing<'a>>;
+
+    /// The colours in which the figures show maps, by their names; `map` gives those that there are.
+    fn styles<'a>(
+        &self,
+        _domain: &dyn Domain,
+        _map: &dyn Fn(&str) -> Option<&'a [f64]>,
+    ) -> Vec<(&'static str, Style)> {
+        Vec::new()
+    }
 
     /// The line down which the mass went, from its begin on; none where there is none.
     fn path(&self, _view: &View<'_>, _domain: &dyn Domain) -> Option<Vec<[f64; 2]>> {

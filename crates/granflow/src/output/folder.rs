@@ -5,8 +5,9 @@ use std::fs::{self, File, OpenOptions, TryLockError};
 use std::io::{self, Read, Seek, Write};
 use std::path::{Path, PathBuf};
 
-/// What a run leaves; an earlier run was here if one of the first four is there.
-const FILES: [&str; 15] = [
+/// What a run leaves; an earlier run was here if one of the first five is there.
+const FILES: [&str; 20] = [
+    "checkpoint/ensemble.part",
     "checkpoint/state.bin",
     "checkpoint/frames.bin",
     "summary.json",
@@ -22,9 +23,13 @@ const FILES: [&str; 15] = [
     "maps_node.csv",
     "animation.png",
     "result.pvd",
+    "members.csv",
+    "members.nc",
+    "ensemble.json",
+    "ensemble.nc",
 ];
-const SIGNS: usize = 4;
-const FOLDERS: [&str; 3] = ["figures", "rasters", "vtk"];
+const SIGNS: usize = 5;
+const FOLDERS: [&str; 4] = ["figures", "members", "rasters", "vtk"];
 /// Where the files of an earlier run go.
 const ASIDE: &str = "previous";
 

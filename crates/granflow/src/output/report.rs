@@ -100,6 +100,8 @@ pub struct Section {
     pub tables: Vec<Table>,
     /// The pictures, in order.
     pub figures: Vec<Figure>,
+    /// A text that is shown as it is, such as a case; empty for none.
+    pub code: String,
 }
 
 /// Writes `report.html`.
@@ -151,6 +153,7 @@ pub fn write_index(path: &Path, title: &str, rows: &[Row], sections: &[Section])
                 @for paragraph in &section.text { p { (paragraph) } }
                 @for table in &section.tables { (text_table(table)) }
                 @for figure in &section.figures { (inline(figure)?) }
+                @if !section.code.is_empty() { pre { code { (section.code) } } }
             }
         }
     };

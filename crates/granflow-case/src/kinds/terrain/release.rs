@@ -59,7 +59,7 @@ pub(super) struct Words {
     /// A parabolic cap.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub cap: Option<Cap>,
-    /// Thickness in the polygons: metres, or { attribute = "name" }.
+    /// Thickness in the polygons: metres, { attribute = "name" }, or { features = [1.2, 0.8] } with one for each feature.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub thickness: Option<Thickness>,
     /// How the thickness is measured.
@@ -102,14 +102,54 @@ pub enum Thickness {
     Constant(f64),
     /// From an attribute of each polygon.
     Attribute(Attribute),
+    /// One for each feature, in the order of the file.
+    Features(Features),
 }
 
 /// An attribute of the polygons that holds the thickness in metres.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
+#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
 pub struct Attribute {
     /// Its name.
     pub attribute: String,
+    /// What it is multiplied by (default 1).
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub factor: Option<f64>,
+}
+
+/// A thickness for each feature.
+#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
+pub struct Features {
+    /// Metres, in the order of the file; features without a shape are left out.
+    pub features: Vec<f64>,
+}
+
+/// The table by which a thickness is written, with the keys of all choices.
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Keys {
+    attribute: Option<String>,
+    factor: Option<f64>,
+    features: Option<Vec<f64>>,
+}
+
+/// The same, once it is one choice.
+#[derive(Deserialize)]
+#[serde(try_from = "Keys")]
+struct Chosen(Thickness);
+
+impl TryFrom<Keys> for Chosen {
+    type Error = &'static str;
+    fn try_from(keys: Keys) -> Result<Self, Self::Error> {
+        match keys {
+            Keys { attribute: Some(attribute), factor, features: None } => {
+                Ok(Self(Thickness::Attribute(Attribute { attribute, factor })))
+            }
+            Keys { attribute: None, factor: None, features: Some(features) } => {
+                Ok(Self(Thickness::Features(Features { features })))
+            }
+            _ => Err("expected either attribute (with or without factor) or features"),
+        }
+    }
 }
 
 impl<'de> Deserialize<'de> for Thickness {
@@ -119,7 +159,7 @@ impl<'de> Deserialize<'de> for Thickness {
             Plain::Number(number) => Ok(Self::Constant(number)),
             Plain::Text(text) => Err(format!("found the text \"{text}\", expected {expected}")),
         };
-        plain_or_table(from, expected, read, Self::Attribute)
+        plain_or_table(from, expected, read, |Chosen(thickness)| thickness)
     }
 }
 
@@ -132,6 +172,21 @@ pub enum Measured {
     Normal,
     /// Along the vertical.
     Vertical,
+}
+
+impl Thickness {
+    fn check(&self, look: &Look, key: &str) -> Result<(), CaseError> {
+        match self {
+            Self::Constant(value) => look.positive(key, Some(*value)),
+            Self::Attribute(attribute) => look.usual(&format!("{key}.factor"), attribute.factor),
+            Self::Features(Features { features }) => {
+                let mut values = features.iter().enumerate();
+                values.try_for_each(|(k, value)| {
+                    look.not_negative(&format!("{key}.features[{k}]"), Some(*value))
+                })
+            }
+        }
+    }
 }
 
 impl Words {
@@ -148,9 +203,7 @@ impl Words {
                         "add thickness = 1.0 (metres) or thickness = { attribute = \"thickness\" }",
                     ));
                 };
-                if let Thickness::Constant(value) = thickness {
-                    look.positive(&thickness_key, Some(value))?;
-                }
+                thickness.check(look, &thickness_key)?;
                 return Ok(Release {
                     extent: Extent::Polygons { path: look.locate(path), thickness },
                     measured,

@@ -8,6 +8,7 @@ use crate::output::figures::{
     Axis, Colours, Extent, Figure, FigureError, Map, Outline, Overlay, Picture, Relief, Section, short,
 };
 use crate::output::outlines::{Lattice, contour, rings};
+use crate::output::style::Style;
 use std::sync::Arc;
 
 /// Colour of the release's outline, and of the edge of all that was reached.
@@ -155,29 +156,55 @@ impl Layer<'_> {
     }
 }
 
+/// The maps that figures show: name, label, unit, colours.
+const SHOWN: [(&str, &str, &str, Colours); 10] = [
+    ("peak_thickness", "greatest thickness", "m", Colours::Thickness),
+    ("deposit", "deposit", "m", Colours::Thickness),
+    ("peak_speed", "greatest speed", "m/s", Colours::Speed),
+    ("peak_pressure", "greatest pressure", "kPa", Colours::Speed),
+    ("arrival_time", "arrival time", "s", Colours::Viridis),
+    ("duration_thickness", "time above the thickness", "s", Colours::Viridis),
+    ("duration_speed", "time above the speed", "s", Colours::Viridis),
+    ("duration_pressure", "time above the pressure", "s", Colours::Viridis),
+    ("eroded_depth", "eroded depth", "m", Colours::Thickness),
+    ("forest_broken", "time at which the forest broke", "s", Colours::Viridis),
+];
+
+/// The layers of the maps that there are, each with its range.
+fn layers<'a>(
+    map: &dyn Fn(&str) -> Option<&'a [f64]>,
+    peak: &'a [f64],
+    terrain: &TerrainDomain,
+) -> Vec<Layer<'a>> {
+    let layer = |(name, label, unit, colours): (&'static str, &'static str, &'static str, Colours)| {
+        let values = map(name)?;
+        let thickness = if name == "deposit" { values } else { peak };
+        let (drawn, most, limit) = (terrain.drawn(), 0.0, 0.0);
+        Some(Layer { name, label, unit, colours, values, thickness, drawn, most, limit }.ranged())
+    };
+    SHOWN.into_iter().filter_map(layer).collect()
+}
+
+/// The colours of the maps, as the figures have them.
+pub(super) fn styles<'a>(
+    map: &dyn Fn(&str) -> Option<&'a [f64]>,
+    terrain: &TerrainDomain,
+) -> Vec<(&'static str, Style)> {
+    let Some(peak) = map("peak_thickness") else { return Vec::new() };
+    let style = |layer: Layer| {
+        let high = if layer.limit > 0.0 { layer.limit } else { 1.0 };
+        let (label, unit) = (layer.label.to_owned(), layer.unit.to_owned());
+        let above = layer.threshold();
+        (layer.name, Style { label, unit, colours: layer.colours, above, range: [0.0, high] })
+    };
+    layers(map, peak, terrain).into_iter().map(style).collect()
+}
+
 /// All figures of a run on a mountain.
 pub(super) fn figures<'a>(view: &'a View<'a>, terrain: &'a TerrainDomain) -> Vec<Drawing<'a>> {
     let Some(peak) = view.map("peak_thickness") else { return Vec::new() };
     let ground = Arc::new(Background { path: path(view, terrain), ..Background::of(view, terrain) });
-    let plan: [(&'static str, &'static str, &'static str, Colours); 10] = [
-        ("peak_thickness", "greatest thickness", "m", Colours::Thickness),
-        ("deposit", "deposit", "m", Colours::Thickness),
-        ("peak_speed", "greatest speed", "m/s", Colours::Speed),
-        ("peak_pressure", "greatest pressure", "kPa", Colours::Speed),
-        ("arrival_time", "arrival time", "s", Colours::Viridis),
-        ("duration_thickness", "time above the thickness", "s", Colours::Viridis),
-        ("duration_speed", "time above the speed", "s", Colours::Viridis),
-        ("duration_pressure", "time above the pressure", "s", Colours::Viridis),
-        ("eroded_depth", "eroded depth", "m", Colours::Thickness),
-        ("forest_broken", "time at which the forest broke", "s", Colours::Viridis),
-    ];
-    let layers = plan.into_iter().filter_map(|(name, label, unit, colours)| {
-        let values = view.map(name)?;
-        let thickness = if name == "deposit" { values } else { peak };
-        let (drawn, most, limit) = (ground.drawn, 0.0, 0.0);
-        Some(Layer { name, label, unit, colours, values, thickness, drawn, most, limit }.ranged())
-    });
-    let layers: Vec<Layer> = layers.collect();
+    let layers = layers(&|name| view.map(name), peak, terrain);
     // Before the maps are drawn side by side: most of them show the same box of the mountain.
     let relief = layers
         .first()

@@ -2,7 +2,7 @@
 
 use super::{ChuteDomain, chute};
 use crate::model::{Domain, Drawing, Instants, Pictures, ResultFile, Scene, View};
-use crate::output;
+use crate::output::{self, style::Style};
 use std::sync::Arc;
 
 #[cfg(feature = "geo")]
@@ -55,6 +55,19 @@ impl Pictures for Avalanche {
         let middle = |centres: &[f64]| Some(0.5 * (centres.first()? + centres.last()?));
         let y = middle(&view.y).unwrap_or(0.0);
         Some(vec![[*view.x.first()?, y], [*view.x.last()?, y]])
+    }
+
+    fn styles<'a>(
+        &self,
+        domain: &dyn Domain,
+        map: &dyn Fn(&str) -> Option<&'a [f64]>,
+    ) -> Vec<(&'static str, Style)> {
+        #[cfg(feature = "geo")]
+        if let Some(terrain) = domain.get::<TerrainDomain>() {
+            return maps::styles(map, terrain);
+        }
+        let _ = (domain, map);
+        Vec::new()
     }
 
     fn animated(&self) -> &'static [&'static str] {

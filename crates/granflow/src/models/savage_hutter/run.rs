@@ -11,6 +11,8 @@ pub mod flowing;
 #[cfg(feature = "geo")]
 mod forest;
 #[cfg(feature = "geo")]
+pub(crate) mod mountain;
+#[cfg(feature = "geo")]
 mod parameters;
 #[cfg(all(feature = "geo", feature = "threads"))]
 pub(crate) mod speed;

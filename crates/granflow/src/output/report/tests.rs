@@ -65,10 +65,12 @@ fn failing_rows_are_marked() {
             lines: vec![vec!["balanced <exact>".into()]],
         }],
         figures: vec![figure(folder.path())],
+        code: "mu < 1".into(),
     }];
     write_index(&path, "Reproduced", &[row(1.5), row(2.0)], &sections).unwrap();
     let page = fs::read_to_string(&path).unwrap();
     assert!(page.contains("<td>balanced &lt;exact&gt;</td>"));
+    assert!(page.contains("<pre><code>mu &lt; 1</code></pre>"));
     assert!(
         page.contains("1 of 2 rows fail") && page.contains("<tr class=\"fail\">") && page.contains("✗ FAIL")
     );

@@ -44,7 +44,7 @@ pub(crate) fn terrain(run: &RunPlan, plan: &OnTerrain) -> Result<Vec<Line>, Star
         TerrainScheme::EnergyStable | TerrainScheme::Balanced => "first order",
         TerrainScheme::EnergyStable2 | TerrainScheme::Balanced2 => "second order",
     };
-    let mut loaded = terrain::load(run, plan)?;
+    let mut loaded = terrain::load(run, plan, None)?;
     let mut lines = case(run, material(&loaded.material), &format!("{order}, film {:e}, ", plan.scheme.film));
     lines.push(threshold(run, " m"));
     lines.extend(mountain(&loaded, plan.material.gravity));

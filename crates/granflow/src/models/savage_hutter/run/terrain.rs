@@ -6,6 +6,7 @@ use super::compression::Compression;
 use super::erosion::Erodible;
 use super::flowing::Flowing;
 use super::forest::Forest;
+use super::mountain::{Mountain, Mountains, curvature_of};
 use super::parameters::{self, InCells};
 use super::supply::{Inflow, Inlet, Late, Supply};
 use crate::StartError;
@@ -15,27 +16,28 @@ use crate::run::{Run, Simulated, step_size};
 use granflow_case::RunPlan;
 use granflow_case::avalanche::Material;
 use granflow_case::terrain::{
-    Entrainment, Extent, Measured, Over, Plan, Release, Starts, TerrainScheme, Thickness,
+    Attribute, Entrainment, Extent, Measured, Over, Plan, Release, Starts, TerrainScheme, Thickness,
 };
 use granflow_engine::grid::Grid;
 use granflow_engine::kernels::Kernel;
 use granflow_engine::simulation::Simulation;
 use granflow_geo::Remark;
-use granflow_geo::raster::{Crs, Raster, Reading};
+use granflow_geo::raster::{Crs, Reading};
 use granflow_geo::release::{self, Sparse};
-use granflow_geo::terrain::{Curvature, Survey, Terrain};
+use granflow_geo::terrain::{Survey, Terrain};
 use granflow_model::savage_hutter::balanced::Balanced;
 use granflow_model::savage_hutter::energy_stable::EnergyStable;
 use granflow_model::savage_hutter::{Flow, ground};
 use granflow_model::scheme::Boundary;
 use std::sync::Arc;
 
-/// More cells than any machine holds.
-const MAX_CELLS: f64 = (1_u64 << 36) as f64;
-
 /// The run of a case on a mountain.
-pub(crate) fn start(run: &RunPlan, plan: &Plan) -> Result<Box<dyn Run>, StartError> {
-    simulate(run, plan, load(run, plan)?)
+pub(crate) fn start(
+    run: &RunPlan,
+    plan: &Plan,
+    mountains: Option<&Mountains>,
+) -> Result<Box<dyn Run>, StartError> {
+    simulate(run, plan, load(run, plan, mountains)?)
 }
 
 /// A mountain and what is released on it, as they were read.
@@ -222,12 +224,12 @@ pub(crate) fn ground_at(
 }
 
 /// Reads the elevation and the releases.
-pub(super) fn load(run: &RunPlan, plan: &Plan) -> Result<Loaded, StartError> {
-    let mut remarks = Vec::new();
-    let (bed, crs, reading) = bed(run, plan, &mut remarks)?;
-    let survey = Survey::of(&bed);
-    remarks.extend(survey.warnings(&plan.dem.display().to_string()));
-    let terrain = curved(run, plan, bed)?;
+pub(super) fn load(run: &RunPlan, plan: &Plan, mountains: Option<&Mountains>) -> Result<Loaded, StartError> {
+    let mountain = match mountains {
+        Some(mountains) => mountains.of(run, plan)?,
+        None => Mountain::read(run, plan)?,
+    };
+    let Mountain { terrain, crs, survey, remarks, reading } = mountain;
     let (release, parts, supply) = (Sparse::default(), Vec::new(), Supply::default());
     let (material, parameters) = (plan.material.clone(), Arc::new(InCells::everywhere(&plan.material)));
     let mut loaded = Loaded {
@@ -263,7 +265,9 @@ pub(super) fn load(run: &RunPlan, plan: &Plan) -> Result<Loaded, StartError> {
     if let Some(entrainment) = &plan.entrainment {
         loaded.layer = Some(layer(run, entrainment, crs.as_ref(), &mut loaded)?);
     }
-    trim();
+    if mountains.is_none() {
+        trim();
+    }
     Ok(loaded)
 }
 
@@ -294,79 +298,6 @@ fn trim() {
     }
 }
 
-/// The elevation on the cells that the case asks for, the system that the case gives, and the bytes that reading held.
-fn bed(
-    run: &RunPlan,
-    plan: &Plan,
-    remarks: &mut Vec<Remark>,
-) -> Result<(Raster, Option<Crs>, usize), StartError> {
-    let crs = match &plan.crs {
-        Some(text) => Some(Crs::parse(text).map_err(|error| {
-            run.fault("terrain.crs", error.to_string(), "write it as crs = \"EPSG:31287\"")
-        })?),
-        None => None,
-    };
-    let reading = Reading::of(&plan.dem, crs.as_ref())?;
-    remarks.extend(reading.notes);
-    let held = reading.bytes;
-    let bed = part(run, plan, reading.raster)?;
-    if bed.crs.is_none() {
-        remarks.push(Remark::Note(format!(
-            "{}: it says no coordinate reference system; its coordinates were taken as metres (crs = \"EPSG:xxxx\" in \
-             [terrain] names one)",
-            plan.dem.display()
-        )));
-    }
-    let Some(cell) = plan.cell else { return Ok((bed, crs, held)) };
-    let [width, height] = [bed.columns, bed.rows].map(|count| count as f64 * bed.cell);
-    let [columns, rows] = [width / cell, height / cell];
-    if columns < 3.0 || rows < 3.0 || columns * rows > MAX_CELLS {
-        let message = format!(
-            "cells of {cell} m cut the terrain of {width} m x {height} m into {columns:.1} x {rows:.1}"
-        );
-        let cure = "allowed are at least 3 along each side, and not more than a machine holds";
-        return Err(run.fault("terrain.cell", message, cure).into());
-    }
-    Ok((bed.resample(cell), crs, held))
-}
-
-/// The part of the elevation model that the case asks for.
-fn part(run: &RunPlan, plan: &Plan, whole: Raster) -> Result<Raster, StartError> {
-    let Some(region) = plan.region else { return Ok(whole) };
-    let refused = |message: String| {
-        let (x, y) = ([whole.west, whole.east()], [whole.south, whole.north()]);
-        let cure = format!("the raster has x {} to {}, y {} to {}", x[0], x[1], y[0], y[1]);
-        StartError::from(run.fault("terrain.region", message, &cure))
-    };
-    let part = whole.cropped(region).ok_or_else(|| refused("no cell of the raster lies in it".to_owned()))?;
-    let Raster { columns, rows, .. } = part;
-    if columns < 3 || rows < 3 {
-        return Err(refused(format!(
-            "it leaves {columns} x {rows} cells, a run needs at least 3 along each side"
-        )));
-    }
-    if part.range().is_none() {
-        return Err(refused("none of its cells has an elevation".to_owned()));
-    }
-    Ok(part)
-}
-
-/// The bed with the window of the case around its cells.
-fn curved(run: &RunPlan, plan: &Plan, bed: Raster) -> Result<Terrain, StartError> {
-    let [width, height] = [bed.columns, bed.rows].map(|count| count as f64 * bed.cell);
-    if let Some(length) = plan.curvature.filter(|length| *length > width.min(height)) {
-        let message = format!("a window of {length} m is wider than the terrain of {width} m x {height} m");
-        let cure = "the window spans a few cells, for instance length = \"20 m\"";
-        return Err(run.fault("terrain.curvature.length", message, cure).into());
-    }
-    Ok(Terrain::new(bed, curvature_of(plan)))
-}
-
-/// The length over which a case takes the derivatives of the bed.
-fn curvature_of(plan: &Plan) -> Curvature {
-    plan.curvature.map_or(Curvature::Off, Curvature::Length)
-}
-
 /// Adds the volume per plan area of one release.
 fn add(loaded: &mut Loaded, one: &Release, crs: Option<&Crs>) -> Result<(), StartError> {
     let bed = &loaded.terrain.bed;
@@ -374,7 +305,13 @@ fn add(loaded: &mut Loaded, one: &Release, crs: Option<&Crs>) -> Result<(), Star
         Extent::Polygons { path, thickness } => {
             let thickness = match thickness {
                 Thickness::Constant(value) => release::Thickness::Value(*value),
-                Thickness::Attribute(name) => release::Thickness::Attribute(name.attribute.clone()),
+                Thickness::Attribute(Attribute { attribute, factor: None }) => {
+                    release::Thickness::Attribute(attribute.clone())
+                }
+                Thickness::Attribute(Attribute { attribute, factor: Some(factor) }) => {
+                    release::Thickness::Scaled(attribute.clone(), *factor)
+                }
+                Thickness::Features(each) => release::Thickness::Each(each.features.clone()),
             };
             let layer = release::Layer::read(path)?;
             loaded.remarks.extend(layer.notes(bed));
