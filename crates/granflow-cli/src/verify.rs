@@ -119,8 +119,8 @@ fn compute(
         .flat_map(|(k, benchmark)| (benchmark.pieces)(size).into_iter().map(move |piece| (k, piece)))
         .collect();
     let of: Vec<usize> = pieces.iter().map(|(k, _)| *k).collect();
-    let done: Arc<Mutex<Vec<Option<Result<Finding, Failure>>>>> =
-        Arc::new(Mutex::new(pieces.iter().map(|_| None).collect()));
+    let done: Vec<Option<Result<Finding, Failure>>> = pieces.iter().map(|_| None).collect();
+    let done = Arc::new(Mutex::new(done));
     let filled = Arc::clone(&done);
     interrupt::unless_asked(move || {
         parallel(pieces.len(), |k| {
