@@ -48,6 +48,7 @@ mod plan;
 mod precision;
 mod quantity;
 mod region;
+mod shown;
 mod source;
 mod stepping;
 mod units;
@@ -59,13 +60,14 @@ pub use checked::Checked;
 pub use durations::Durations;
 pub use fault::{CaseError, CaseErrorKind};
 pub use file_kind::FileKind;
-pub use files::{FileAccess, NoFiles, Outline};
+pub use files::{FileAccess, NoFiles, Outline, open_file};
 pub use formula::{Formula, FormulaError};
 pub use grid::{Axis, Grid, Places, Points};
 pub use kinds::*;
 pub use nearest::nearest;
 pub use plan::{Ends, Frames, OutputPlan, RunPlan, Stepping, Until};
 pub use precision::Precision;
+pub use shown::{short_numbers, steers};
 pub use watched::{Gauge, Line, Section, Watched};
 
 #[cfg(test)]

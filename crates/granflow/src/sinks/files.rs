@@ -105,8 +105,7 @@ pub struct Files {
     cost: f64,
     saving: bool,
     pause: f64,
-    /// When the series were last joined and what it cost \[s\]; `None` while they are
-    /// being joined.
+    /// When the series were last joined and what it cost \[s\]; `None` while they are being joined.
     joined: Option<(Instant, f64)>,
     /// What happened to the files before the first step.
     notice: Option<String>,
