@@ -53,5 +53,10 @@ def main():
     rows = [(int(code), repr(metres), name) for code, metres, name in database.execute(units) if not rates.search(name)]
     write("lengths.tsv", f"Units of length: code, metres, name ({source})", rows)
 
+    # GeoTIFFs carry these codes as if they were the EPSG's; its own codes of projected systems begin at 2000 and leave them free.
+    maps = "select code from projected_crs where auth_name = 'ESRI' and code between '53000' and '54999' and length(code) = 5"
+    rows = [(int(code), pyproj.CRS.from_authority("ESRI", code).to_wkt("WKT1_ESRI")) for (code,) in database.execute(maps)]
+    write("maps.tsv", f"Maps of the world: ESRI's code, definition ({source})", rows)
+
 
 main()

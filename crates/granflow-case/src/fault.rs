@@ -1,5 +1,6 @@
 //! What is wrong with a case: the place, what was found, what is allowed, and the cure.
 
+use crate::shown::short_numbers;
 use std::fmt;
 use std::ops::Range;
 
@@ -47,7 +48,7 @@ impl CaseError {
             text: text.to_owned(),
             span,
             key: key.to_owned(),
-            message,
+            message: short_numbers(&message).into_owned(),
             help: Vec::new(),
         }))
     }

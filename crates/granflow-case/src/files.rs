@@ -2,6 +2,7 @@
 
 use std::cell::RefCell;
 use std::fmt::Debug;
+use std::fs::File;
 use std::io::{self, Read};
 use std::path::{Path, PathBuf};
 
@@ -185,10 +186,23 @@ pub(crate) fn read_case(path: &Path, tables: &[String]) -> Result<String, CaseEr
     Ok(text)
 }
 
+/// Opens a file to be read; a pipe or a device is refused, for opening a pipe waits for somebody who writes into it.
+///
+/// # Errors
+/// Why it cannot be read.
+pub fn open_file(path: &Path) -> io::Result<File> {
+    let kind = std::fs::metadata(path)?.file_type();
+    if !kind.is_file() {
+        let what = if kind.is_dir() { "a folder" } else { "a pipe or a device" };
+        return Err(io::Error::new(io::ErrorKind::InvalidInput, format!("it is {what}, not a file")));
+    }
+    File::open(path)
+}
+
 /// The content of a file, as far as it may be a case.
 fn start_of(path: &Path) -> io::Result<Vec<u8>> {
     let mut bytes = Vec::new();
-    std::fs::File::open(path)?.take(LONGEST + 1).read_to_end(&mut bytes)?;
+    open_file(path)?.take(LONGEST + 1).read_to_end(&mut bytes)?;
     Ok(bytes)
 }
 

@@ -49,6 +49,7 @@ mod plan;
 mod precision;
 mod quantity;
 mod region;
+mod shown;
 mod source;
 mod stepping;
 mod units;
@@ -61,13 +62,14 @@ pub use durations::Durations;
 pub use ensemble::{Ensemble, Member};
 pub use fault::{CaseError, CaseErrorKind};
 pub use file_kind::FileKind;
-pub use files::{FileAccess, NoFiles, Outline};
+pub use files::{FileAccess, NoFiles, Outline, open_file};
 pub use formula::{Formula, FormulaError};
 pub use grid::{Axis, Grid, Places, Points};
 pub use kinds::*;
 pub use nearest::nearest;
 pub use plan::{Ends, Frames, OutputPlan, RunPlan, Stepping, Until};
 pub use precision::Precision;
+pub use shown::{short_numbers, steers};
 pub use watched::{Gauge, Line, Section, Watched};
 
 #[cfg(test)]

@@ -10,6 +10,7 @@ use granflow::simulation::SimdLevel;
 use granflow::speed::{Extent, Setup, SpeedError, Triad, spells};
 
 use crate::failure::{Failure, print};
+use crate::interrupt;
 
 mod beside;
 mod report;
@@ -67,10 +68,14 @@ struct Plan {
 /// Measures and prints a table, row by row.
 pub fn bench(options: &Options) -> Result<(), Failure> {
     let plan = plan(options)?;
+    interrupt::listen()?;
     let mut report = Report::new(options.json.clone(), plan.instructions, options.wet, options.quick);
     report.save()?;
     if let Some(command) = &options.beside {
-        report.yardsticks = yardsticks(command, When::Before)?;
+        match yardsticks(command, When::Before)? {
+            Some(found) => report.yardsticks = found,
+            None => return Err(report.interrupted()),
+        }
     }
     let (numbers, passes) = if options.quick { (1 << 21, 5) } else { (Triad::beyond_caches(), 11) };
     let mut triad = Triad::new(numbers);
@@ -84,6 +89,9 @@ pub fn bench(options: &Options) -> Result<(), Failure> {
             let mut load = setup.start(Extent { cells, wet: options.wet });
             load.use_simd(plan.instructions);
             for &threads in &plan.threads {
+                if interrupt::is_asked() {
+                    return Err(report.interrupted());
+                }
                 let spells = spells(load.as_mut(), threads, repeats, Duration::from_secs_f64(seconds));
                 let row = Row::new(setup, cells, threads, load.as_ref(), &spells?);
                 print(&report.add(row))?;
@@ -92,7 +100,10 @@ pub fn bench(options: &Options) -> Result<(), Failure> {
         }
     }
     if let Some(command) = &options.beside {
-        report.yardsticks.extend(yardsticks(command, When::After)?);
+        match yardsticks(command, When::After)? {
+            Some(found) => report.yardsticks.extend(found),
+            None => return Err(report.interrupted()),
+        }
         print(&report.ratios())?;
     }
     report.complete = true;

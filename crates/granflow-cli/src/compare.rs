@@ -6,6 +6,7 @@ use clap::{Args, ValueEnum};
 use granflow::compare::{By, Comparison, Measured};
 
 use crate::failure::{Failure, print, tell};
+use crate::interrupt;
 
 /// What the command line says about a comparison.
 #[derive(Debug, Args)]
@@ -54,7 +55,14 @@ pub fn compare(options: &Options) -> Result<(), Failure> {
         },
         vertical: matches!(options.measured, Direction::Vertical),
     };
-    let comparison = granflow::compare::compare(&options.a, &options.b, &how)?;
+    interrupt::listen()?;
+    let (a, b) = (options.a.clone(), options.b.clone());
+    let Some(comparison) = interrupt::unless_asked(move || granflow::compare::compare(&a, &b, &how)) else {
+        let message =
+            format!("nothing was written into {}; the same command starts again", options.out.display());
+        return Err(Failure::Interrupted(message));
+    };
+    let comparison = comparison?;
     comparison.notes.iter().for_each(|note| tell(&format!("note: {note}\n")));
     let files = comparison.write(&options.out)?;
     let files: String = files.iter().map(|file| format!("{}\n", file.display())).collect();

@@ -5,7 +5,7 @@ use std::path::Path;
 use std::process::ExitCode;
 
 use granflow::StartError;
-use granflow::case::{CaseError, CaseErrorKind};
+use granflow::case::{CaseError, CaseErrorKind, short_numbers};
 use granflow::compare::CompareError;
 use granflow::results::FilesError;
 use granflow::session::RunError;
@@ -139,7 +139,7 @@ impl From<CompareError> for Failure {
 /// Prints on standard output, [`plain`]; a reader that closed the pipe (`| head`) is no failure.
 pub fn print(text: &str) -> Result<(), Failure> {
     let mut out = io::stdout().lock();
-    match out.write_all(plain(text).as_bytes()).and_then(|()| out.flush()) {
+    match out.write_all(plain(&short_numbers(text)).as_bytes()).and_then(|()| out.flush()) {
         Err(error) if error.kind() != io::ErrorKind::BrokenPipe => {
             Err(Failure::File(format!("cannot write to standard output: {error}")))
         }
@@ -149,7 +149,7 @@ pub fn print(text: &str) -> Result<(), Failure> {
 
 /// Writes on standard error at once, [`plain`].
 pub fn tell(text: &str) {
-    send(&plain(text));
+    send(&plain(&short_numbers(text)));
 }
 
 /// Writes on standard error at once, with the codes of a terminal that the text holds; nobody is left to be told if it is closed.

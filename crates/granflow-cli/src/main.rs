@@ -154,6 +154,7 @@ enum Command {
 }
 
 fn main() -> ExitCode {
+    interrupt::outlive_limits();
     match act(Arguments::parse().command) {
         Ok(()) => ExitCode::SUCCESS,
         Err(failure) => failure.report(),

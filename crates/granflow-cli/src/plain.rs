@@ -15,10 +15,9 @@ pub fn plain(text: &str) -> Cow<'_, str> {
     Cow::Owned(out)
 }
 
-/// Control characters (C0, DEL, C1), and the directional marks of UAX 9.
+/// New lines and tabs are what lines are made of.
 fn steers(sign: char) -> bool {
-    let turns = matches!(sign, '\u{61c}' | '\u{200e}' | '\u{200f}' | '\u{202a}'..='\u{202e}' | '\u{2066}'..='\u{2069}');
-    turns || (sign.is_control() && !matches!(sign, '\n' | '\t'))
+    !matches!(sign, '\n' | '\t') && granflow::case::steers(sign)
 }
 
 #[cfg(test)]

@@ -1,10 +1,12 @@
 //! `granflow verify`: every scheme against known answers.
 
 use std::path::Path;
+use std::sync::{Arc, Mutex, PoisonError};
 
 use granflow::output::tables::Row;
 
 use crate::failure::{Failure, print};
+use crate::interrupt;
 use crate::page::{self, parallel};
 
 mod arc;
@@ -50,20 +52,43 @@ pub fn benchmarks_help() -> String {
          Examples:\n\
          \x20 granflow verify            all; a few minutes\n\
          \x20 granflow verify A I        some; a letter stands for all that begin with it\n\n\
-         Writes tables.json, index.html and figures/. Exit status 1 if a row is outside its tolerance."
+         Writes tables.json, index.html and figures/. Exit status 1 if a row is outside its tolerance.\n\
+         Ctrl-C, SIGTERM and SIGHUP end with the page of the benchmarks that are complete; a second one ends at once."
     )
 }
 
-/// Computes the benchmarks of these names, or all, and writes what was found.
+/// Computes the benchmarks of these names, or all, and writes what was found; once a signal asks for the end, what was found
+/// of those that are complete.
 pub fn verify(names: &[String], out: &Path, quick: bool) -> Result<(), Failure> {
     let chosen = choose(names)?;
-    page::folder(out)?;
+    interrupt::listen()?;
+    let folder = page::Folder::make(out)?;
     let found = compute(&chosen, if quick { Size::Small } else { Size::Full })?;
+    if found.is_empty() {
+        return Err(folder.nothing("no benchmark"));
+    }
+    let left: Vec<&str> = (chosen.iter().map(|benchmark| benchmark.name))
+        .filter(|name| !found.iter().any(|(complete, _)| complete.name == *name))
+        .collect();
     let rows = rows(&found);
-    let folder = out.join("figures");
+    let figures = Path::new(page::FIGURES);
     let chapters =
-        found.iter().map(|(benchmark, findings)| benchmark::chapter(benchmark, findings, &folder)).collect();
-    print(&page::write(out, "granflow, verified", &rows, chapters)?)?;
+        found.iter().map(|(benchmark, findings)| benchmark::chapter(benchmark, findings, figures)).collect();
+    let title = match left.as_slice() {
+        [] => "granflow, verified".to_owned(),
+        left => format!("granflow, verified in part: without {}", left.join(", ")),
+    };
+    print(&folder.write(&title, &rows, chapters)?)?;
+    if !left.is_empty() {
+        return Err(Failure::Interrupted(format!(
+            "{}: {} of {} benchmarks are complete and written; `granflow verify {}{} --out DIR` computes the others",
+            out.display(),
+            found.len(),
+            chosen.len(),
+            left.join(" "),
+            if quick { " --quick" } else { "" }
+        )));
+    }
     match rows.iter().filter(|row| !row.pass()).count() {
         0 => Ok(()),
         fail => Err(Failure::Verdict(format!("{fail} of {} rows are outside their tolerances", rows.len()))),
@@ -85,6 +110,7 @@ fn choose(names: &[String]) -> Result<Vec<&'static Benchmark>, Failure> {
 }
 
 /// Computes all pieces of these benchmarks, on all cores.
+/// What was found of the benchmarks: of all, or of those that were complete when a signal asked for the end.
 fn compute(
     chosen: &[&'static Benchmark],
     size: Size,
@@ -92,12 +118,29 @@ fn compute(
     let pieces: Vec<(usize, Piece)> = (chosen.iter().enumerate())
         .flat_map(|(k, benchmark)| (benchmark.pieces)(size).into_iter().map(move |piece| (k, piece)))
         .collect();
-    let findings = parallel(pieces.len(), |k| (pieces[k].1.work)());
-    let mut found: Vec<_> = chosen.iter().map(|benchmark| (*benchmark, Vec::new())).collect();
-    for ((k, piece), finding) in pieces.iter().zip(findings) {
-        found[*k].1.push(Finding { scheme: piece.scheme, ..finding? });
+    let of: Vec<usize> = pieces.iter().map(|(k, _)| *k).collect();
+    let done: Vec<Option<Result<Finding, Failure>>> = pieces.iter().map(|_| None).collect();
+    let done = Arc::new(Mutex::new(done));
+    let filled = Arc::clone(&done);
+    interrupt::unless_asked(move || {
+        parallel(pieces.len(), |k| {
+            let (_, piece) = &pieces[k];
+            let finding = (piece.work)().map(|finding| Finding { scheme: piece.scheme, ..finding });
+            // After an interruption nobody is left to take it.
+            if let Some(place) = filled.lock().unwrap_or_else(PoisonError::into_inner).get_mut(k) {
+                *place = Some(finding);
+            }
+        });
+    });
+    let done = std::mem::take(&mut *done.lock().unwrap_or_else(PoisonError::into_inner));
+    let mut found: Vec<_> = chosen.iter().map(|benchmark| Some((*benchmark, Vec::new()))).collect();
+    for (k, finding) in of.into_iter().zip(done) {
+        match (finding.transpose()?, &mut found[k]) {
+            (Some(finding), Some((_, findings))) => findings.push(finding),
+            _ => found[k] = None,
+        }
     }
-    Ok(found)
+    Ok(found.into_iter().flatten().collect())
 }
 
 fn rows(found: &[(&Benchmark, Vec<Finding>)]) -> Vec<Row> {

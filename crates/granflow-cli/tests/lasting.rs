@@ -10,19 +10,9 @@ use std::ffi::OsStr;
 use std::fs;
 use std::os::unix::ffi::OsStrExt;
 use std::path::{Path, PathBuf};
-use std::process::{Child, Command, Output, Stdio};
+use std::process::{Child, Command, Stdio};
 use std::time::{Duration, Instant};
-use support::{PROGRAM, granflow, told};
-
-/// A line of shell with the program as `$GRANFLOW`.
-fn shell(folder: &Path, line: &str) -> Output {
-    Command::new("sh")
-        .current_dir(folder)
-        .env("GRANFLOW", PROGRAM)
-        .args(["-c", line])
-        .output()
-        .expect("a shell")
-}
+use support::{PROGRAM, granflow, shell, signal, told};
 
 /// A run of about a second: a case, by its kind and changes of it.
 struct Long {
@@ -239,11 +229,6 @@ fn wait_for(file: &Path) {
         std::thread::sleep(Duration::from_millis(5));
     }
     std::thread::sleep(Duration::from_millis(300));
-}
-
-fn signal(name: &str, process: u32) {
-    let sent = Command::new("kill").args([&format!("-{name}"), &process.to_string()]).status();
-    assert!(sent.is_ok_and(|status| status.success()));
 }
 
 #[test]

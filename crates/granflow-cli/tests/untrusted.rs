@@ -146,3 +146,58 @@ fn deep_keys_and_endless_lines_are_refused_in_few_words() {
         Some(2)
     );
 }
+
+/// A title is one line in every file, whatever stands in the case.
+#[test]
+fn a_title_of_lines_and_escapes_breaks_no_file() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let title = "title = \"two\\nlines, \\u001b[31m & <b>\""; // as TOML writes it
+    let case =
+        CASE.replace("title = \"test\"", title) + "[output]\nfiles = [\"netcdf\", \"csv\", \"report\"]\n";
+    put(folder.path(), "case.toml", &case);
+    let output = granflow(folder.path(), &["run", "case.toml", "--out", "out"]);
+    assert!(output.status.success(), "{}", told(&output));
+    let shown = "two lines, \\u{1b}[31m & <b>";
+    let read = |name: &str| std::fs::read_to_string(folder.path().join("out").join(name)).expect("the file");
+    let summary: serde_json::Value = serde_json::from_str(&read("summary.json")).expect("JSON");
+    assert_eq!(summary["title"], shown);
+    assert!(read("report.html").contains("<title>two lines, \\u{1b}[31m &amp; &lt;b&gt;</title>"));
+    let result = netcdf_reader::NcFile::open(folder.path().join("out/result.nc")).expect("the result");
+    let attribute = result.global_attribute("title").expect("a title").value.as_string();
+    assert_eq!(attribute.as_deref(), Some(shown));
+    let ledger = read("mass.csv");
+    let columns = |line: &str| line.split(',').count();
+    let widths: Vec<usize> = ledger.lines().map(columns).collect();
+    assert!(widths.iter().all(|width| *width == widths[0]), "{ledger}");
+    assert!(granflow(folder.path(), &["plot", "out/result.nc", "--out", "again"]).status.success());
+}
+
+#[test]
+fn numbers_of_any_size_are_shown_in_few_signs() {
+    let folder = tempfile::tempdir().expect("a folder");
+    put(folder.path(), "case.toml", CASE);
+    for set in ["initial.thickness=1e308", "grid.x.from=-1e300", "output.every=1e-300", "time.end=1e308"] {
+        let output = granflow(folder.path(), &["check", "case.toml", "--set", set]);
+        let text = said(&output) + &told(&output);
+        let longest = text.split(|sign: char| !sign.is_ascii_digit()).map(str::len).max();
+        assert!(longest < Some(30), "{set}: {text}");
+    }
+}
+
+/// What is no file is refused and not waited for.
+#[test]
+#[cfg(unix)]
+fn pipes_and_devices_are_refused() {
+    let folder = tempfile::tempdir().expect("a folder");
+    assert!(support::shell(folder.path(), "mkfifo pipe.nc").status.success());
+    for words in [
+        &["check", "pipe.nc"][..],
+        &["run", "/dev/zero"],
+        &["plot", "pipe.nc"],
+        &["compare", "pipe.nc", "pipe.nc"],
+    ] {
+        let output = granflow(folder.path(), words);
+        assert_eq!(output.status.code(), Some(4), "{words:?}: {}", told(&output));
+        assert!(told(&output).contains("a pipe or a device, not a file"), "{words:?}: {}", told(&output));
+    }
+}

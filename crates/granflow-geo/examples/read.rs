@@ -1,7 +1,8 @@
 //! Prints as JSON what the readers make of a file, or why they refuse it: for comparing them with other programs.
 //!
 //! `read raster FILE [CRS]` prints a raster, `read release FILE DEM ATTRIBUTE` the volume of a release \[m^3\], `read systems` two
-//! definitions to a line of standard input, apart by a tab, as same, different or unknown.
+//! definitions to a line of standard input, apart by a tab, as same, different or unknown; `read scales` the largest and smallest scale of a
+//! map at a place, both with its system on a line of standard input.
 
 use granflow_geo::raster::{Comparison, Crs, Raster, Reading};
 use granflow_geo::release::{Layer, Thickness};
@@ -12,13 +13,16 @@ use std::path::Path;
 fn main() {
     let words: Vec<String> = std::env::args().skip(1).collect();
     let words: Vec<&str> = words.iter().map(String::as_str).collect();
-    let answer = match words[..] {
-        ["raster", file] => raster(file, None),
-        ["raster", file, crs] => raster(file, Some(crs)),
-        ["release", file, dem, attribute] => release(file, dem, attribute),
-        ["systems"] => systems(),
-        _ => Err("read raster FILE [CRS] | read release FILE DEM ATTRIBUTE | read systems".into()),
-    };
+    let answer =
+        match words[..] {
+            ["raster", file] => raster(file, None),
+            ["raster", file, crs] => raster(file, Some(crs)),
+            ["release", file, dem, attribute] => release(file, dem, attribute),
+            ["systems"] => systems(),
+            ["scales"] => scales(),
+            _ => Err("read raster FILE [CRS] | read release FILE DEM ATTRIBUTE | read systems | read scales"
+                .into()),
+        };
     match answer {
         Ok(text) => println!("{text}"),
         Err(error) => println!("{}", serde_json::json!({ "refused": error.to_string() })),
@@ -61,6 +65,17 @@ fn systems() -> Result<String, Box<dyn Error>> {
             },
             (Err(error), _) | (_, Err(error)) => format!("refused: {error}"),
         });
+    }
+    Ok(serde_json::json!(answers).to_string())
+}
+
+fn scales() -> Result<String, Box<dyn Error>> {
+    let mut answers = Vec::new();
+    for line in std::io::stdin().lock().lines() {
+        let line = line?;
+        let parts: Vec<&str> = line.split('\t').collect();
+        let [crs, x, y] = parts[..] else { return Err("a system, x and y, apart by tabs".into()) };
+        answers.push(Crs::parse(crs)?.factors([x.parse()?, y.parse()?]));
     }
     Ok(serde_json::json!(answers).to_string())
 }

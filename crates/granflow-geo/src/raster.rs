@@ -6,6 +6,7 @@ mod crs;
 mod declared;
 mod error;
 mod geotiff;
+mod ground;
 mod projection;
 mod register;
 mod resample;
@@ -70,11 +71,21 @@ impl Reading {
     /// # Errors
     /// As [`Raster::read_in`].
     pub fn of(path: &Path, crs: Option<&Crs>) -> Result<Reading, RasterError> {
+        let (raster, declared, mut notes, bytes) = Self::stored(path, crs)?;
+        raster.true_to_scale(path, &mut notes)?;
+        Ok(Reading { bytes, ..Reading::in_metres(path, raster, declared, crs, notes)? })
+    }
+
+    /// The same of heights on a terrain, whose map has been judged and whose system is `crs`.
+    ///
+    /// # Errors
+    /// As [`Raster::read_in`].
+    pub fn on_terrain(path: &Path, crs: Option<&Crs>) -> Result<Reading, RasterError> {
         let (raster, declared, notes, bytes) = Self::stored(path, crs)?;
         Ok(Reading { bytes, ..Reading::in_metres(path, raster, declared, crs, notes)? })
     }
 
-    /// The same of numbers that are no heights, say coefficients of friction: a unit of heights is not applied.
+    /// The same of numbers on a terrain that are no heights, say coefficients of friction: a unit of heights is not applied.
     ///
     /// # Errors
     /// As [`Raster::read_in`].
@@ -111,12 +122,6 @@ impl Reading {
         mut notes: Vec<Remark>,
     ) -> Result<Reading, RasterError> {
         let mut raster = raster.checked(path)?;
-        if let (Some(crs), Some(scale)) = (&raster.crs, raster.scale())
-            && let Scale::At { factors, .. } = scale
-            && scale.error() > DOUBTFUL
-        {
-            notes.push(error::nearly_to_scale(path, crs, factors));
-        }
         let systems = raster.crs.iter().chain(given);
         let heights = declared.heights.or(systems.filter_map(Crs::heights).next());
         let [factor, offset] = Declared { heights, ..declared }.to_metres(path, &mut notes)?;
@@ -162,6 +167,7 @@ impl Raster {
         } else {
             ascii::from_bytes(name, &bytes, (None, Declared::default()), crs, &mut notes)?
         };
+        raster.true_to_scale(name, &mut notes)?;
         Reading::in_metres(name, raster, declared, crs, notes).map(|reading| reading.raster)
     }
 
@@ -238,12 +244,29 @@ impl Raster {
         self.crs.as_ref().is_some_and(Crs::is_geographic) || globe && self.cell < 1.0 && steep
     }
 
-    /// The scale of a map of the world where it is worst: in the middle, or at the southern or northern edge.
+    /// The scale of the map where it is worst: in the middle, at a corner, or amid a side.
     fn scale(&self) -> Option<Scale> {
         let crs = self.crs.as_ref()?;
-        let (x, middle) = (0.5 * (self.west + self.east()), 0.5 * (self.south + self.north()));
-        let scales = [middle, self.south, self.north()].into_iter().filter_map(|y| crs.scale([x, y]));
+        let middle = [0.5 * (self.west + self.east()), 0.5 * (self.south + self.north())];
+        let [xs, ys] = [[middle[0], self.west, self.east()], [middle[1], self.south, self.north()]];
+        let places = xs.into_iter().flat_map(|x| ys.map(|y| [x, y]));
+        let scales = places.filter_map(|place| crs.scale(place));
         scales.max_by(|a, b| a.error().total_cmp(&b.error()))
+    }
+
+    /// Are lengths on the map those on the ground? A small difference is a warning.
+    fn true_to_scale(&self, path: &Path, notes: &mut Vec<Remark>) -> Result<(), RasterError> {
+        let metres =
+            |crs: &&Crs| !crs.is_geographic() && crs.metres_per_unit().is_none_or(|unit| unit == 1.0);
+        let Some(crs) = self.crs.as_ref().filter(metres) else { return Ok(()) };
+        match self.scale() {
+            Some(scale) if scale.error() > DISTORTED => {
+                return Err(RasterError::not_to_scale(path, self, scale));
+            }
+            Some(scale) if scale.error() > DOUBTFUL => notes.push(error::nearly_to_scale(path, crs, scale)),
+            _ => {}
+        }
+        Ok(())
     }
 
     /// The demands on every raster: metres, and at least one value.
@@ -255,9 +278,6 @@ impl Raster {
             self.crs.as_ref().and_then(Crs::metres_per_unit).filter(|m| (m - 1.0).abs() > 1e-9)
         {
             return Err(RasterError::unit(path, self.crs.as_ref(), metres, self.cell));
-        }
-        if let Some(scale) = self.scale().filter(|scale| scale.error() > DISTORTED) {
-            return Err(RasterError::not_to_scale(path, &self, scale));
         }
         let Some((low, high)) = self.range() else {
             return Err(RasterError::Empty { path: path.into(), cells: self.values.len() });

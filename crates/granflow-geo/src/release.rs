@@ -23,7 +23,7 @@ pub use vector::Layer;
 pub(crate) use vector::named as named_system;
 
 use crate::Remark;
-use crate::raster::{Comparison, Crs, Raster, uncertain};
+use crate::raster::{Comparison, Crs, Raster, Reading, uncertain};
 use crate::terrain::Terrain;
 use geo::{Area, BooleanOps, BoundingRect, Contains, Line, Point, Polygon, Rect, Validation, unary_union};
 use rstar::primitives::{GeomWithData, Rectangle};
@@ -40,6 +40,9 @@ pub enum Measured {
     /// Along the vertical.
     Vertical,
 }
+
+/// No thickness is larger \[m\]: the bound of every number of a case.
+const THICKEST: f64 = 1e12;
 
 /// How much of a release may lie where the terrain has no values before it is refused.
 const LOST: f64 = 1e-6;
@@ -210,7 +213,7 @@ fn laid(layer: Layer, thickness: &Thickness, template: &Raster) -> Result<Sparse
 /// [`ReleaseError::Raster`] with what [`Raster::read`] says, a negative thickness with its place, a raster without
 /// any material, and material beyond the edge of `template` or on its nodata cells.
 pub fn raster(path: &Path, template: &Raster) -> Result<Sparse, ReleaseError> {
-    carried(path, &Raster::read_in(path, template.crs.as_ref())?, template)
+    carried(path, &Reading::on_terrain(path, template.crs.as_ref())?.raster, template)
 }
 
 /// As [`raster`], for a raster that was read before; `path` stands in messages.
@@ -219,7 +222,7 @@ pub fn raster(path: &Path, template: &Raster) -> Result<Sparse, ReleaseError> {
 /// As [`raster`], but for reading.
 pub fn carried(path: &Path, given: &Raster, template: &Raster) -> Result<Sparse, ReleaseError> {
     given.same_system(path, template)?;
-    if let Some(k) = given.values.iter().position(|h| *h < 0.0) {
+    if let Some(k) = given.values.iter().position(|h| *h < 0.0 || *h > THICKEST) {
         let (x, y) = (given.x(k % given.columns), given.y(k / given.columns));
         return Err(ReleaseError::Negative { path: path.into(), x, y, found: given.values[k] });
     }

@@ -236,12 +236,17 @@ impl Comparison {
     /// [`CompareError`] naming the file.
     pub fn write(&self, folder: &Path) -> Result<[PathBuf; 2], CompareError> {
         let [json, figure] = ["compare.json", "compare.png"].map(|name| folder.join(name));
-        whole_file(&json, |out| {
-            serde_json::to_writer_pretty(&mut *out, self).map_err(std::io::Error::from)?;
-            writeln!(out)
-        })?;
         let picture = picture::draw(self)?;
         output::figures::save(&picture, &figure)?;
+        let written = whole_file(&json, |out| {
+            serde_json::to_writer_pretty(&mut *out, self).map_err(std::io::Error::from)?;
+            writeln!(out)
+        });
+        if written.is_err() {
+            // A picture beside numbers of another comparison would be read as theirs.
+            [&json, &figure].into_iter().try_for_each(|path| output::remove_if_there(path))?;
+        }
+        written?;
         Ok([json, figure])
     }
 }

@@ -69,13 +69,18 @@ pub(crate) fn memory(run: &RunPlan, size: &Size) -> String {
     format!("about {} at its peak{}", in_words(peak), verdict.unwrap_or_default())
 }
 
+/// From so many bytes on `check` says how `result.nc` is packed.
+const LARGE: f64 = 1e8;
+
 /// How many frames there will be, and what they take on disk.
 pub(crate) fn written(run: &RunPlan, size: &Size) -> String {
     let bytes = size.frame_bytes(run);
     match run.output.frames.count(&run.ends) {
         Some(count) => {
-            let all = in_words(bytes * count as f64);
-            format!("at most {count} frames, {all} in result.nc, and once more while the run goes on")
+            let bytes = bytes * count as f64;
+            let pack = if bytes < LARGE { "" } else { "; `nccopy -d 4 -s result.nc small.nc` packs it" };
+            let all = in_words(bytes);
+            format!("at most {count} frames, {all} in result.nc, and once more while the run goes on{pack}")
         }
         None => format!(
             "at most {} frames of {}: how many is not known before the run ends",

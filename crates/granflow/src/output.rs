@@ -114,7 +114,7 @@ impl Error {
 fn cure(error: &io::Error) -> &'static str {
     match error.kind() {
         io::ErrorKind::StorageFull | io::ErrorKind::QuotaExceeded | io::ErrorKind::FileTooLarge => {
-            "; what was complete before is still there: make room, then continue with --resume (from the last checkpoint; before the first, start again)"
+            "; what was complete before is still there: make room, then give the same command again (granflow run with --resume, from the last checkpoint; before the first without)"
         }
         io::ErrorKind::PermissionDenied | io::ErrorKind::ReadOnlyFilesystem => {
             "; choose a folder you may write to with --out"

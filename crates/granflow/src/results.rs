@@ -96,14 +96,17 @@ impl Finished {
         result.write(&path, Some(&mut frames))
     }
 
-    /// Remove the frames, of which `result.nc` has a second copy: nothing more is made of the run. One that was interrupted or
-    /// that failed keeps them, to go on from its checkpoint.
+    /// List the files that the run left ([`Folder::list`]) and remove the frames, of which `result.nc` has a second copy:
+    /// nothing more is made of the run. One that was interrupted or that failed keeps them, to go on from its checkpoint.
     ///
     /// # Errors
     /// [`output::Error`] if the disk refuses.
     pub fn close(self) -> Result<Summary, output::Error> {
         use crate::stop_reason::StopReason;
         if !matches!(self.summary.stop_reason, StopReason::Interrupted | StopReason::Failed) {
+            if let Some(folder) = &self.folder {
+                folder.list()?;
+            }
             let path = self.frames.path().to_owned();
             drop(self.frames);
             output::remove_if_there(&path)?;

@@ -114,6 +114,9 @@ impl Checked {
             notice(&format!("the files of an earlier run are now in {}", aside.display()));
         }
         let mut files = begin(folder, &plan, origin, command, &mut *run)?.since(begun);
+        if let Some(text) = files.notice() {
+            notice(text);
+        }
         let mut report = Callback(report);
         let sinks: &mut [&mut dyn Sink] = &mut [&mut Stop(stop), &mut report, &mut files];
         match drive(&mut *run, &plan.ends, sinks) {

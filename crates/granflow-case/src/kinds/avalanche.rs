@@ -1,5 +1,6 @@
 //! What the kinds of avalanches share: friction, schemes and ends of savage_hutter.
 
+use crate::shown::one_line;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -55,7 +56,7 @@ pub(super) fn plan(
     (output, watched): (OutputPlan, Watched),
 ) -> RunPlan {
     RunPlan {
-        title: title.to_owned(),
+        title: one_line(title),
         model: MODEL,
         scheme: scheme.name.as_str(),
         stepping,

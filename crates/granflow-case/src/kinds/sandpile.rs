@@ -1,5 +1,6 @@
 //! A growing sandpile: hadeler_kuttler on `[grid]`.
 
+use crate::shown::one_line;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -146,7 +147,7 @@ impl Written for Words {
         };
         let run = RunPlan {
             watched: Watched::default(),
-            title: title.clone(),
+            title: one_line(title),
             model: MODEL,
             scheme: scheme.name.as_str(),
             stepping,

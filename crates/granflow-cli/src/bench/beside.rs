@@ -1,8 +1,10 @@
 //! A program of somebody else that measures the same on the same machine, to compare with.
 
-use std::process::{Command, Stdio};
+use std::io::Read;
+use std::process::{Child, Command, Stdio};
 
 use crate::failure::Failure;
+use crate::interrupt;
 
 /// When it ran.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -26,19 +28,32 @@ pub struct Yardstick {
     pub mcups: f64,
 }
 
-/// Runs the command by the system's shell and gives the speeds that it prints.
-pub fn yardsticks(command: &str, when: When) -> Result<Vec<Yardstick>, Failure> {
+/// Runs the command by the system's shell and gives the speeds that it prints; `None` where a signal asks for the end, which
+/// ends the command too.
+pub fn yardsticks(command: &str, when: When) -> Result<Option<Vec<Yardstick>>, Failure> {
     let (shell, flag) = if cfg!(windows) { ("cmd", "/C") } else { ("sh", "-c") };
-    let output = Command::new(shell)
-        .args([flag, command])
-        .stderr(Stdio::inherit())
-        .output()
-        .map_err(|error| Failure::File(format!("cannot start `{command}`: {error}")))?;
-    if !output.status.success() {
-        let message = format!("`{command}` failed: {}", output.status);
+    let failed = |error| Failure::File(format!("cannot run `{command}`: {error}"));
+    let mut shell = Command::new(shell);
+    shell.args([flag, command]).stdin(Stdio::null()).stdout(Stdio::piped());
+    #[cfg(unix)]
+    std::os::unix::process::CommandExt::process_group(&mut shell, 0);
+    let mut child = shell.spawn().map_err(failed)?;
+    let mut out = child.stdout.take();
+    let printed = interrupt::unless_asked(move || {
+        let mut bytes = Vec::new();
+        out.as_mut().map_or(Ok(0), |out| out.read_to_end(&mut bytes)).map(|_| bytes)
+    });
+    let Some(printed) = printed.filter(|_| !interrupt::is_asked()) else {
+        end(&mut child);
+        return Ok(None);
+    };
+    let status = child.wait().map_err(failed)?;
+    if !status.success() {
+        let message = format!("`{command}` failed: {status}");
         return Err(Failure::usage(message, "--beside takes a command that runs by itself"));
     }
-    let text = String::from_utf8_lossy(&output.stdout);
+    let printed = printed.map_err(failed)?;
+    let text = String::from_utf8_lossy(&printed);
     let found: Vec<Yardstick> = text.lines().filter_map(|line| parse(line, when)).collect();
     if found.is_empty() {
         return Err(Failure::usage(
@@ -46,7 +61,22 @@ pub fn yardsticks(command: &str, when: When) -> Result<Vec<Yardstick>, Failure> 
             "it must print lines as `threads=2 name 2000x2000 Mcups 99.5`",
         ));
     }
-    Ok(found)
+    Ok(Some(found))
+}
+
+/// Ends the shell with all that it started.
+#[cfg(unix)]
+fn end(child: &mut Child) {
+    if let Ok(group) = i32::try_from(child.id()) {
+        // SAFETY: sends a signal to a group of which our child, not waited for yet, is the leader.
+        unsafe { libc::kill(-group, libc::SIGTERM) };
+    }
+}
+
+#[cfg(not(unix))]
+fn end(child: &mut Child) {
+    // It may be gone by itself.
+    let _ = child.kill();
 }
 
 /// `threads=T NAME NxN Mcups X`; other lines say nothing.

@@ -191,6 +191,22 @@ impl Report {
         text
     }
 
+    /// The end by a signal: the rows that were measured stay, a file without any goes.
+    pub fn interrupted(&self) -> Failure {
+        let rows = self.rows.len();
+        let file = match &self.json {
+            Some(path) if rows == 0 => match std::fs::remove_file(path) {
+                Ok(()) => format!("; {} would be empty and is removed", path.display()),
+                Err(error) => return Failure::file("remove", path, &error),
+            },
+            Some(path) => format!("; {} holds them, with `complete` false", path.display()),
+            None => String::new(),
+        };
+        Failure::Interrupted(format!(
+            "{rows} rows are measured{file}; the same command starts again, --scheme measures one"
+        ))
+    }
+
     /// Writes the file, if there is to be one.
     pub fn save(&self) -> Result<(), Failure> {
         let Some(path) = &self.json else { return Ok(()) };

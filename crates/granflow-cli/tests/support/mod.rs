@@ -21,3 +21,19 @@ pub fn said(output: &Output) -> String {
 pub fn told(output: &Output) -> String {
     String::from_utf8_lossy(&output.stderr).into_owned()
 }
+
+/// A line of shell with the program as `$GRANFLOW`.
+pub fn shell(folder: &Path, line: &str) -> Output {
+    Command::new("sh")
+        .current_dir(folder)
+        .env("GRANFLOW", PROGRAM)
+        .args(["-c", line])
+        .output()
+        .expect("a shell")
+}
+
+/// Sends a signal, as in "TERM", to a process.
+pub fn signal(name: &str, process: u32) {
+    let sent = Command::new("kill").args([&format!("-{name}"), &process.to_string()]).status();
+    assert!(sent.is_ok_and(|status| status.success()));
+}

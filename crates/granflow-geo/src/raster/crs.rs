@@ -91,9 +91,18 @@ impl Crs {
         self.system()?.unit
     }
 
-    /// The scale of a map of the world at a place in its coordinates; `None` where nothing is known against it.
+    /// The scale of the map at a place in its coordinates; `None` where nothing is known against it.
     pub(super) fn scale(&self, place: [f64; 2]) -> Option<Scale> {
         self.system()?.scale(place)
+    }
+
+    /// Metres on the map of a metre on the ground at a place in its coordinates, the largest and the smallest of all directions;
+    /// `None` where they are not computed.
+    pub fn factors(&self, place: [f64; 2]) -> Option<[f64; 2]> {
+        match self.scale(place)? {
+            Scale::At { factors: [a, b], .. } => Some([a.max(b), a.min(b)]),
+            Scale::World => None,
+        }
     }
 
     /// What the system says of heights.

@@ -93,10 +93,10 @@ pub enum RasterError {
         /// What is wrong and what helps.
         problem: String,
     },
-    /// A map of the world, on which lengths are not those on the ground.
+    /// A map on which lengths are not those on the ground.
     #[error(
         "{path} is in {found}, {wrong}; {cure}",
-        path = path.display(), wrong = wrong(*percent), cure = match place {
+        path = path.display(), wrong = lengths, cure = match place {
             Some((epsg, cell)) => reproject(path, *epsg, *cell),
             None => anywhere(path),
         }
@@ -106,9 +106,8 @@ pub enum RasterError {
         path: PathBuf,
         /// The system.
         found: String,
-        /// Percent by which lengths on the map are too long, or too short, eastward and northward; none of a map whose scale is
-        /// not computed.
-        percent: Option<[f64; 2]>,
+        /// By how much lengths on the map are wrong, in words.
+        lengths: String,
         /// The UTM zone that fits, and a cell size in metres.
         place: Option<(u32, f64)>,
     },
@@ -220,14 +219,14 @@ impl RasterError {
 
     pub(super) fn not_to_scale(path: &Path, raster: &Raster, scale: Scale) -> RasterError {
         let found = raster.crs.as_ref().map(Crs::describe).unwrap_or_default();
-        let (percent, place) = match scale {
-            Scale::World => (None, None),
-            Scale::At { factors, degrees } => {
+        let place = match scale {
+            Scale::World => None,
+            Scale::At { factors, degrees, .. } => {
                 let cell = two_digits(raster.cell / (factors[0] * factors[1]).sqrt());
-                (Some(percent(factors)), Some((utm(degrees[0], degrees[1]), cell)))
+                Some((utm(degrees[0], degrees[1]), cell))
             }
         };
-        RasterError::NotToScale { path: path.into(), found, percent, place }
+        RasterError::NotToScale { path: path.into(), found, lengths: wrong(scale), place }
     }
 
     pub(super) fn unit(path: &Path, crs: Option<&Crs>, metres: f64, cell: f64) -> RasterError {
@@ -250,38 +249,30 @@ fn utm(longitude: f64, latitude: f64) -> u32 {
     if latitude < 0.0 { 32700 + zone } else { 32600 + zone }
 }
 
-/// By how many percent lengths are too long.
-fn percent(factors: [f64; 2]) -> [f64; 2] {
-    factors.map(|factor| 100.0 * (factor - 1.0))
-}
-
 /// In what way lengths are wrong.
-fn wrong(percent: Option<[f64; 2]>) -> String {
-    match percent {
-        Some(percent) => format!("where {}", lengths(percent)),
-        None => "a map of the world, on which lengths are not those on the ground".into(),
-    }
-}
-
-fn lengths(percent: [f64; 2]) -> String {
-    let way = |percent: f64| -> String {
-        match percent {
-            _ if percent.abs() < 0.05 => "true".into(),
-            _ if percent < 0.0 => format!("{:.1} % too short", -percent),
-            _ => format!("{percent:.1} % too long"),
+fn wrong(scale: Scale) -> String {
+    let Scale::At { factors, ways, .. } = scale else {
+        return "a map of the world, on which lengths are not those on the ground".into();
+    };
+    let long = |factor: f64| -> String {
+        match 100.0 * (factor - 1.0) {
+            percent if percent.abs() < 0.05 => "true".into(),
+            percent if percent < 0.0 => format!("{:.1} % too short", -percent),
+            percent => format!("{percent:.1} % too long"),
         }
     };
-    match percent.map(way) {
-        [east, north] if east == north => format!("lengths are {east} here"),
-        [east, north] => format!("lengths are {east} eastward and {north} northward here"),
+    let [one, other] = factors.map(long);
+    match one == other {
+        true => format!("where lengths are {one} here"),
+        false => format!("where lengths are {one} {} and {other} {} here", ways[0], ways[1]),
     }
 }
 
 /// The warning of a map on which lengths are a little wrong.
-pub(super) fn nearly_to_scale(path: &Path, crs: &Crs, factors: [f64; 2]) -> Remark {
-    let (path, found, lengths) = (path.display(), crs.describe(), lengths(percent(factors)));
+pub(super) fn nearly_to_scale(path: &Path, crs: &Crs, scale: Scale) -> Remark {
+    let (path, found, lengths) = (path.display(), crs.describe(), wrong(scale));
     Remark::Warning(format!(
-        "{path}: it is in {found}, where {lengths}, and slopes and areas are wrong with them; a system made for this place \
+        "{path}: it is in {found}, {lengths}, and slopes and areas are wrong with them; a system made for this place \
          has true lengths (UTM, the national one; see epsg.io)"
     ))
 }

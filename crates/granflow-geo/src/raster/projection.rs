@@ -12,9 +12,9 @@ pub(super) struct Projection {
 
 /// Methods by their name without blanks and underscores; others go by the name itself.
 const METHODS: [(&str, &[&str]); 16] = [
-    ("transverse_mercator", &["transversemercator", "gausskruger", "transversemercatorcomplex"]),
+    (TRANSVERSE_MERCATOR, &["transversemercator", "gausskruger", "transversemercatorcomplex"]),
     (
-        "lambert_conformal_conic",
+        LAMBERT_CONIC,
         &[
             "lambertconformalconic",
             "lambertconformalconic1sp",
@@ -33,11 +33,11 @@ const METHODS: [(&str, &[&str]); 16] = [
             "stereographicsouthpole",
         ],
     ),
-    ("oblique_stereographic", &["obliquestereographic", "doublestereographic"]),
-    ("lambert_azimuthal_equal_area", &["lambertazimuthalequalarea"]),
-    ("albers", &["albersconicequalarea", "albers", "albersequalarea"]),
+    (OBLIQUE_STEREOGRAPHIC, &["obliquestereographic", "doublestereographic"]),
+    (LAMBERT_AZIMUTHAL, &["lambertazimuthalequalarea"]),
+    (ALBERS, &["albersconicequalarea", "albers", "albersequalarea"]),
     (
-        "hotine_natural_origin",
+        HOTINE_ORIGIN,
         &[
             "hotineobliquemercator",
             "hotineobliquemercatorazimuthnaturalorigin",
@@ -46,7 +46,7 @@ const METHODS: [(&str, &[&str]); 16] = [
         ],
     ),
     (
-        "hotine_centre",
+        HOTINE_CENTRE,
         &[
             "hotineobliquemercatorazimuthcenter",
             "rectifiedskeworthomorphiccenter",
@@ -60,8 +60,8 @@ const METHODS: [(&str, &[&str]); 16] = [
         &["equirectangular", "platecarree", "equidistantcylindrical", "equidistantcylindricalspherical"],
     ),
     (EQUAL_AREA, &["cylindricalequalarea", "lambertcylindricalequalarea"]),
-    ("cassini_soldner", &["cassinisoldner", "cassini"]),
-    ("polyconic", &["polyconic", "americanpolyconic"]),
+    (CASSINI, &["cassinisoldner", "cassini"]),
+    (POLYCONIC, &["polyconic", "americanpolyconic"]),
     (KROVAK, &["krovak", "krovaknorthorientated"]),
     ("lambert_belgium", &["lambertconformalconic2spbelgium", "lambertconicconformal2spbelgium"]),
 ];
@@ -71,16 +71,25 @@ pub(super) const MERCATOR: &str = "mercator";
 pub(super) const PSEUDO_MERCATOR: &str = "pseudo_mercator";
 pub(super) const EQUIDISTANT: &str = "equirectangular";
 pub(super) const EQUAL_AREA: &str = "cylindrical_equal_area";
-const POLAR: &str = "polar_stereographic";
+pub(super) const TRANSVERSE_MERCATOR: &str = "transverse_mercator";
+pub(super) const LAMBERT_CONIC: &str = "lambert_conformal_conic";
+pub(super) const LAMBERT_AZIMUTHAL: &str = "lambert_azimuthal_equal_area";
+pub(super) const ALBERS: &str = "albers";
+pub(super) const POLAR: &str = "polar_stereographic";
+pub(super) const OBLIQUE_STEREOGRAPHIC: &str = "oblique_stereographic";
+pub(super) const HOTINE_ORIGIN: &str = "hotine_natural_origin";
+pub(super) const HOTINE_CENTRE: &str = "hotine_centre";
+pub(super) const CASSINI: &str = "cassini_soldner";
+pub(super) const POLYCONIC: &str = "polyconic";
 const KROVAK: &str = "krovak";
 
 pub(super) const LATITUDE: &str = "latitude of origin";
 pub(super) const LONGITUDE: &str = "longitude of origin";
 pub(super) const PARALLEL_1: &str = "first standard parallel";
-const PARALLEL_2: &str = "second standard parallel";
+pub(super) const PARALLEL_2: &str = "second standard parallel";
 const PSEUDO_PARALLEL: &str = "pseudo standard parallel";
-const AZIMUTH: &str = "azimuth";
-const GRID_ANGLE: &str = "angle of the grid";
+pub(super) const AZIMUTH: &str = "azimuth";
+pub(super) const GRID_ANGLE: &str = "angle of the grid";
 pub(super) const SCALE: &str = "scale factor";
 pub(super) const EASTING: &str = "false easting";
 pub(super) const NORTHING: &str = "false northing";
@@ -181,7 +190,7 @@ impl Projection {
                 self.parameters.push((LATITUDE.into(), parallel));
             }
             // A cone that touches: ESRI names the parallel and the latitude, which are the same.
-            ("lambert_conformal_conic", Some(parallel), None) if Some(parallel) == self.own(LATITUDE) => {
+            (LAMBERT_CONIC, Some(parallel), None) if Some(parallel) == self.own(LATITUDE) => {
                 self.parameters.retain(|(name, _)| name != PARALLEL_1);
             }
             (_, Some(first), Some(second)) if first > second => {

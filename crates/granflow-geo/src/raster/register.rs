@@ -1,11 +1,12 @@
 //! The part of the EPSG register that well-known text does not carry: codes of datums by any of their names, units by
-//! code and by name, heights of vertical systems by code.
+//! code and by name, heights of vertical systems by code; and ESRI's maps of the world by code.
 //!
 //! The tables are written by `validation/register.py`.
 
 const DATUMS: &str = include_str!("register/datums.tsv");
 const HEIGHTS: &str = include_str!("register/heights.tsv");
 const LENGTHS: &str = include_str!("register/lengths.tsv");
+const MAPS: &str = include_str!("register/maps.tsv");
 
 /// Names of units that files write and the register does not.
 const ALIASES: [(&str, u32); 23] = [
@@ -34,56 +35,10 @@ const ALIASES: [(&str, u32); 23] = [
     ("yd", 9096),
 ];
 
-/// ESRI's maps of the world on WGS 84 by the last two digits of their codes, 540xx; 530xx are the same on a sphere.
-const WORLD_MAPS: [(u32, &str, &str); 29] = [
-    (1, "Plate_Carree", "Plate_Carree"),
-    (2, "Equidistant_Cylindrical", "Equidistant_Cylindrical"),
-    (3, "Miller_Cylindrical", "Miller_Cylindrical"),
-    (4, "Mercator", "Mercator"),
-    (8, "Sinusoidal", "Sinusoidal"),
-    (9, "Mollweide", "Mollweide"),
-    (10, "Eckert_VI", "Eckert_VI"),
-    (11, "Eckert_V", "Eckert_V"),
-    (12, "Eckert_IV", "Eckert_IV"),
-    (13, "Eckert_III", "Eckert_III"),
-    (14, "Eckert_II", "Eckert_II"),
-    (15, "Eckert_I", "Eckert_I"),
-    (16, "Gall_Stereographic", "Gall_Stereographic"),
-    (17, "Behrmann", "Behrmann"),
-    (18, "Winkel_I", "Winkel_I"),
-    (19, "Winkel_II", "Winkel_II"),
-    (22, "Quartic_Authalic", "Quartic_Authalic"),
-    (23, "Loximuthal", "Loximuthal"),
-    (29, "Van_der_Grinten_I", "Van_der_Grinten_I"),
-    (30, "Robinson", "Robinson"),
-    (34, "Cylindrical_Equal_Area", "Cylindrical_Equal_Area"),
-    (42, "Winkel_Tripel_NGS", "Winkel_Tripel"),
-    (43, "Aitoff", "Aitoff"),
-    (44, "Hammer_Aitoff", "Hammer_Aitoff"),
-    (45, "Flat_Polar_Quartic", "Flat_Polar_Quartic"),
-    (46, "Craster_Parabolic", "Craster_Parabolic"),
-    (48, "Times", "Times"),
-    (52, "Goode_Homolosine_Land", "Goode_Homolosine"),
-    (53, "Goode_Homolosine_Ocean", "Goode_Homolosine"),
-];
-
 /// The definition of a map of the world by its code at ESRI, 530xx or 540xx; GeoTIFFs carry such codes as those of the EPSG.
 pub(super) fn world_map(code: u32) -> Option<String> {
-    let (prefix, base) = match code / 100 {
-        530 => ("Sphere", "GEOGCS[\"GCS_Sphere\",DATUM[\"D_Sphere\",SPHEROID[\"Sphere\",6371000.0,0.0]]"),
-        540 => (
-            "World",
-            "GEOGCS[\"GCS_WGS_1984\",DATUM[\"D_WGS_1984\",SPHEROID[\"WGS_1984\",6378137.0,298.257223563]]",
-        ),
-        _ => return None,
-    };
-    let (_, name, method) = WORLD_MAPS.iter().find(|(last, ..)| *last == code % 100)?;
-    // The map with a standard parallel other than the equator.
-    let parallel = if code % 100 == 2 { "PARAMETER[\"Standard_Parallel_1\",60.0]," } else { "" };
-    Some(format!(
-        "PROJCS[\"{prefix}_{name}\",{base},PRIMEM[\"Greenwich\",0.0],UNIT[\"Degree\",0.0174532925199433]],\
-         PROJECTION[\"{method}\"],{parallel}UNIT[\"Meter\",1.0],AUTHORITY[\"ESRI\",\"{code}\"]]"
-    ))
+    let code = code.to_string();
+    rows(MAPS).find(|row| row[0] == code).map(|row| row[1].to_owned())
 }
 
 /// A name without what writers differ in: case, blanks, underscores, ESRI's `D_`.

@@ -1,11 +1,13 @@
-//! The scale of maps of the world: how long a metre on the ground is on the map, where it lies.
+//! The scale of maps: how long a metre on the ground is on the map, where it lies.
 
+use super::ground::{self, Globe};
 use super::projection::{EASTING, EQUAL_AREA, EQUIDISTANT, LATITUDE, LONGITUDE, MERCATOR, NORTHING};
 use super::projection::{PARALLEL_1, PSEUDO_MERCATOR, Projection, SCALE};
 
 /// Maps of the world, by their names without blanks and underscores, whose scale is not computed: they are true to scale on a
 /// few lines at most.
-const WORLD: [&str; 40] = [
+const WORLD: [&str; 46] = [
+    "adamssquareii",
     "aitoff",
     "behrmann",
     "compactmiller",
@@ -34,12 +36,17 @@ const WORLD: [&str; 40] = [
     "naturalearth",
     "naturalearthii",
     "patterson",
+    "peircequincuncial",
     "quarticauthalic",
     "robinson",
     "sinusoidal",
     "times",
+    "toblercylindricali",
+    "toblercylindricalii",
+    "twopointequidistant",
     "vandergrinten",
     "vandergrinteni",
+    "verticalnearsideperspective",
     "wagneriv",
     "wagnerv",
     "wagnervii",
@@ -48,67 +55,49 @@ const WORLD: [&str; 40] = [
     "winkeltripel",
 ];
 
-/// The figure of the Earth below a map.
-#[derive(Debug, Clone, Copy)]
-pub(super) struct Globe {
-    /// Semi-major axis \[m\].
-    pub axis: f64,
-    /// 0 for a sphere.
-    pub inverse_flattening: f64,
-    /// Degrees of its prime meridian east of Greenwich.
-    pub meridian: f64,
-}
-
-/// How long a metre on the ground is on a map of the world.
+/// How long a metre on the ground is on a map.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) enum Scale {
-    /// A cylindrical map at a place.
+    /// A map at a place.
     At {
-        /// Metres on the map of a metre eastward and of a metre northward.
+        /// Metres on the map of a metre in two directions at right angles.
         factors: [f64; 2],
+        /// The directions, in words.
+        ways: [&'static str; 2],
         /// Longitude from Greenwich and latitude of the place \[degrees\].
         degrees: [f64; 2],
     },
-    /// Another map of the world.
+    /// A map of the world whose scale is not computed.
     World,
 }
 
-impl Globe {
-    pub const WGS_84: Globe = Globe { axis: 6_378_137.0, inverse_flattening: 298.257_223_563, meridian: 0.0 };
-
-    /// The square of the eccentricity.
-    fn squared(&self) -> f64 {
-        let f = if self.inverse_flattening > 1.0 { 1.0 / self.inverse_flattening } else { 0.0 };
-        f * (2.0 - f)
-    }
-
-    /// The radius of a parallel over the semi-major axis.
-    fn parallel(&self, latitude: f64) -> f64 {
-        latitude.cos() / (1.0 - self.squared() * latitude.sin().powi(2)).sqrt()
-    }
-
-    /// atanh(e sin(phi)) / e, which on a sphere is sin(phi).
-    fn stretched(&self, latitude: f64) -> f64 {
-        let e = self.squared().sqrt();
-        if e == 0.0 { latitude.sin() } else { (e * latitude.sin()).atanh() / e }
-    }
-}
+/// The directions of cylindrical maps.
+const COMPASS: [&str; 2] = ["eastward", "northward"];
+/// Those in which a map stretches most and least.
+const PRINCIPAL: [&str; 2] = ["one way", "across it"];
 
 impl Scale {
-    /// The scale at a place of a map \[m\]; `None` of a method that is no map of the world.
-    ///
-    /// With m = cos(phi) / sqrt(1 - e^2 sin^2(phi)), m_0 that of the standard parallel or the scale factor: m_0 / m eastward;
-    /// northward the same (Mercator), m / m_0 (equal area), 1 (equidistant), or dy / dphi over the radius of the meridian
-    /// (maps of the web, a sphere's formula on an ellipsoid). J. P. Snyder, Map projections, USGS Professional Paper 1395
-    /// (1987).
+    /// The scale at a place of a map \[m\]; `None` of a method that is not known.
     pub fn of(map: &Projection, globe: Globe, place: [f64; 2]) -> Option<Scale> {
         let method = map.method.as_str();
         if WORLD.contains(&method) {
             return Some(Scale::World);
         }
-        if ![MERCATOR, PSEUDO_MERCATOR, EQUIDISTANT, EQUAL_AREA].contains(&method) {
-            return None;
+        if [MERCATOR, PSEUDO_MERCATOR, EQUIDISTANT, EQUAL_AREA].contains(&method) {
+            return Some(Scale::cylindrical(map, globe, place));
         }
+        let (factors, degrees) = ground::factors(map, globe, place)?;
+        Some(Scale::At { factors, ways: PRINCIPAL, degrees })
+    }
+
+    /// The scale of a cylindrical map.
+    ///
+    /// With m = cos(phi) / sqrt(1 - e^2 sin^2(phi)), m_0 that of the standard parallel or the scale factor: m_0 / m eastward;
+    /// northward the same (Mercator), m / m_0 (equal area), 1 (equidistant), or dy / dphi over the radius of the meridian
+    /// (maps of the web, a sphere's formula on an ellipsoid). J. P. Snyder, Map projections, USGS Professional Paper 1395
+    /// (1987).
+    fn cylindrical(map: &Projection, globe: Globe, place: [f64; 2]) -> Scale {
+        let method = map.method.as_str();
         let standard = match map.own(PARALLEL_1).filter(|_| method != PSEUDO_MERCATOR) {
             Some(parallel) => globe.parallel(parallel.to_radians()),
             None => map.value(SCALE),
@@ -128,7 +117,8 @@ impl Scale {
         };
         let east = (place[0] - map.value(EASTING)) / (globe.axis * standard);
         let longitude = globe.meridian + map.value(LONGITUDE) + east.to_degrees();
-        Some(Scale::At { factors: [eastward, northward], degrees: [longitude, latitude.to_degrees()] })
+        let degrees = [longitude, latitude.to_degrees()];
+        Scale::At { factors: [eastward, northward], ways: COMPASS, degrees }
     }
 
     /// By how much lengths are wrong at most, as a share of the length on the ground; endless where that is not computed.
@@ -169,11 +159,11 @@ fn latitude(northing: impl Fn(f64) -> f64, wanted: f64) -> f64 {
 mod tests {
     use crate::Remark;
     use crate::raster::tests::sampled;
-    use crate::raster::{Crs, Declared, Raster, Reading};
+    use crate::raster::{Crs, Raster};
     use std::path::Path;
 
     fn refused(raster: Raster) -> String {
-        raster.checked(Path::new("dem.tif")).unwrap_err().to_string()
+        raster.true_to_scale(Path::new("dem.tif"), &mut Vec::new()).unwrap_err().to_string()
     }
 
     /// A raster of 10 m cells with its centre at a place of a system.
@@ -228,8 +218,8 @@ mod tests {
     fn a_mercator_is_allowed_where_lengths_are_true_and_warned_of_where_nearly() {
         let read = |code, place| {
             let raster = placed(&Crs { epsg: Some(code), wkt: None }, place);
-            let path = Path::new("dem.asc");
-            Reading::in_metres(path, raster, Declared::default(), None, Vec::new()).map(|read| read.notes)
+            let mut notes = Vec::new();
+            raster.true_to_scale(Path::new("dem.asc"), &mut notes).map(|()| notes)
         };
         // 2, 7 and 12 degrees south.
         assert_eq!(read(3395, [1.2e7, -221_200.0]).unwrap(), []);
@@ -244,5 +234,55 @@ mod tests {
         for (code, place) in [(32632, [5e5, 5e6]), (31287, [4e5, 4e5]), (3035, [4.3e6, 2.7e6])] {
             assert_eq!(read(code, place).unwrap(), [], "{code}");
         }
+    }
+
+    #[test]
+    fn the_factors_of_maps_are_those_of_proj() {
+        // tissot_semimajor and tissot_semiminor of pyproj 3.7.2 (PROJ 9.5.1); `validation/scales.py` compares all systems.
+        for (code, place, expected) in [
+            (32632, [500000.000, 5094047.492], [0.999600007, 0.999599993]),
+            (32632, [1985530.771, 5797224.402], [1.026812301, 1.026812301]),
+            (31287, [147618.347, 372075.839], [0.999672652, 0.999672631]),
+            (3035, [4321000.000, 2654053.480], [1.000857559, 0.999143176]),
+            (3035, [4948738.512, 5055028.417], [1.012185739, 0.987960965]),
+            (3034, [4000000.000, 2585140.621], [0.965725235, 0.965725235]),
+            (5070, [-760465.745, 1923013.980], [1.009113707, 0.990968603]),
+            (3413, [0.000, -2750247.670], [1.017495214, 1.017495214]),
+            (3031, [284571.723, 1613886.439], [0.989625552, 0.989625537]),
+            (28992, [197981.142, 334568.531], [1.000020499, 1.000020478]),
+            (2193, [1359473.679, 5123750.873], [1.000311600, 1.000311600]),
+            (5880, [4342200.070, 8888164.155], [1.005352438, 0.999999951]),
+            (2056, [2604637.321, 1149715.000], [1.000031073, 1.000031073]),
+        ] {
+            let found = Crs { epsg: Some(code), wkt: None }.factors(place).unwrap();
+            let error = found.iter().zip(expected).map(|(a, b)| (a / b - 1.0).abs()).fold(0.0, f64::max);
+            assert!(error < 1e-6, "{code}: {found:?} against {expected:?}");
+        }
+        // Axes that count southward and westward, and a method without an inverse here.
+        for code in [2065, 2048, 27200] {
+            assert_eq!(Crs { epsg: Some(code), wkt: None }.factors([1e5, 1e5]), None, "{code}");
+        }
+    }
+
+    #[test]
+    fn maps_far_from_their_origin_are_refused_or_warned_of() {
+        let judged = |code, place| {
+            let raster = placed(&Crs { epsg: Some(code), wkt: None }, place);
+            let mut notes = Vec::new();
+            let judged = raster.true_to_scale(Path::new("dem.tif"), &mut notes);
+            judged.map(|()| notes).map_err(|error| error.to_string())
+        };
+        // Zone 32 in the zone beside it, in Kiev and in the Urals.
+        assert_eq!(judged(32632, [1.1e6, 5e6]).unwrap(), []);
+        assert_eq!(judged(32632, [1.9e6, 5.7e6]).unwrap_err().matches("long here").count(), 1);
+        assert!(judged(32632, [3.5e6, 7e6]).unwrap_err().contains("gdalwarp -t_srs EPSG:326"));
+        // Europe's equal areas: true at the Alps, wrong in Lapland, more so on the Canaries.
+        assert_eq!(judged(3035, [4.3e6, 2.7e6]).unwrap(), []);
+        let notes = judged(3035, [5.0e6, 5.2e6]).unwrap();
+        assert!(matches!(&*notes, [Remark::Warning(text)] if text.contains("across it")), "{notes:?}");
+        let canaries = judged(3035, [1.6e6, 9.5e5]).unwrap_err();
+        assert!(canaries.contains("too long one way and") && canaries.contains("EPSG:32628"), "{canaries}");
+        // A cone of 35 and 65 degrees is 3 % too short half way between.
+        assert!(judged(3034, [4e6, 2.6e6]).unwrap_err().contains("too short here"));
     }
 }

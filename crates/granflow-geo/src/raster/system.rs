@@ -1,8 +1,9 @@
 //! A coordinate reference system in one form, whatever defines it: datum, projection, parameters, units.
 
-use super::projection::Projection;
+use super::ground::Globe;
+use super::projection::{POLAR, Projection};
 use super::register;
-use super::scale::{Globe, Scale};
+use super::scale::Scale;
 use super::wkt::Node;
 
 /// How two systems compare.
@@ -33,6 +34,8 @@ pub(super) struct System {
     pub unit: Option<f64>,
     datum: Option<Datum>,
     pub projection: Option<Projection>,
+    /// An axis counts southward or westward.
+    turned: bool,
     /// What is said of heights.
     pub heights: Option<Heights>,
 }
@@ -99,17 +102,20 @@ impl System {
             unit,
             datum: base.and_then(Datum::of),
             projection,
+            turned: crs.children().any(|node| node.is("AXIS") && turned(node)),
             heights: root.find(&VERTICAL).map(Heights::of),
         })
     }
 
-    /// The scale of a map of the world at a place; `None` where nothing is known against it.
+    /// The scale of the map at a place; `None` where nothing is known against it.
     pub fn scale(&self, place: [f64; 2]) -> Option<Scale> {
         let globe = self.datum.as_ref().map_or(Globe::WGS_84, |datum| {
             let [axis, inverse] = datum.ellipsoid;
             Globe { axis, inverse_flattening: inverse, meridian: datum.meridian }
         });
-        Scale::of(self.projection.as_ref()?, globe, place)
+        // Away from a pole all axes lie on meridians, and the coordinates count as ever.
+        let usual = |map: &&Projection| map.method == POLAR || !self.turned;
+        Scale::of(self.projection.as_ref().filter(usual)?, globe, place)
     }
 
     /// Compares all but the heights.
@@ -209,6 +215,12 @@ impl Heights {
     pub fn coded(code: u32) -> Heights {
         register::heights(code).map_or(Heights::Unknown, Heights::Unit)
     }
+}
+
+/// Whether an axis counts southward or westward.
+fn turned(axis: &Node) -> bool {
+    let way = |way: &str| ["south", "west"].iter().any(|turned| way.eq_ignore_ascii_case(turned));
+    (1..3).filter_map(|k| axis.text(k)).any(way)
 }
 
 /// Metres of the unit of a system, from the system itself or from its first axis.

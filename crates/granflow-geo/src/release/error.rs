@@ -74,7 +74,7 @@ pub enum ReleaseError {
     },
     /// A thickness is negative or no number.
     #[error(
-        "{path}, feature {feature}: {name} {}; allowed are numbers from 0 on, in metres: give it one, or thickness = 1.0 in \
+        "{path}, feature {feature}: {name} {}; allowed are numbers from 0 to 1e12, in metres: give it one, or thickness = 1.0 in \
          the case for all features", if found.is_empty() { "is not given (NULL)".into() } else { format!("= `{found}` is not a thickness") },
         path = path.display()
     )]
@@ -88,9 +88,9 @@ pub enum ReleaseError {
         /// Its content.
         found: String,
     },
-    /// A thickness raster has a negative value.
+    /// A thickness raster has a value that is negative or beyond all bounds.
     #[error(
-        "{path}: the thickness at ({x}, {y}) is {found} m; allowed are values from 0 on, and nodata for none",
+        "{path}: the thickness at ({x}, {y}) is {found} m; allowed are values from 0 to 1e12, and nodata for none",
         path = path.display()
     )]
     Negative {

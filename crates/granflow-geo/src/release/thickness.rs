@@ -1,7 +1,7 @@
 //! How thick the features of a release are.
 
-use super::ReleaseError;
 use super::vector::Feature;
+use super::{ReleaseError, THICKEST};
 use std::path::Path;
 
 /// Where the thickness of a polygon comes from.
@@ -48,7 +48,7 @@ impl Thickness {
                 (value, text.to_string(), name)
             }
         };
-        match value.filter(|value: &f64| value.is_finite() && *value >= 0.0) {
+        match value.filter(|value: &f64| (0.0..=THICKEST).contains(value)) {
             Some(value) => Ok(value),
             None => {
                 let (path, name) = (path.into(), name.to_string());

@@ -10,7 +10,7 @@ use crate::raster::{Comparison, Crs, RasterError, Reading};
 use crate::release::{Form, Layer, ReleaseError};
 use crate::results::{FilesError, Story};
 use geo::{MultiPolygon, unary_union};
-use std::fs::File;
+use granflow_case::open_file;
 use std::io::Read;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -60,7 +60,7 @@ impl Side {
     pub fn read(path: &Path, by: By, notes: &mut Vec<String>) -> Result<Side, CompareError> {
         let path = if path.is_dir() { path.join("result.nc") } else { path.to_owned() };
         let mut head = [0; 64];
-        let read = File::open(&path).and_then(|mut file| file.read(&mut head));
+        let read = open_file(&path).and_then(|mut file| file.read(&mut head));
         let read = match read {
             Ok(count) => &head[..count],
             Err(source) if path.extension().is_some_and(|end| end == "nc") => {

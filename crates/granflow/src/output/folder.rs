@@ -1,12 +1,13 @@
 //! The folder of a run's results: one run at a time, no file of an earlier one among its own.
 
-use super::{Error, remove_if_there, remove_leftovers};
+use super::inputs::Input;
+use super::{Error, remove_if_there, remove_leftovers, whole_file};
 use std::fs::{self, File, OpenOptions, TryLockError};
 use std::io::{self, Read, Seek, Write};
 use std::path::{Path, PathBuf};
 
 /// What a run leaves; an earlier run was here if one of the first five is there.
-const FILES: [&str; 20] = [
+const FILES: [&str; 21] = [
     "checkpoint/ensemble.part",
     "checkpoint/state.bin",
     "checkpoint/frames.bin",
@@ -27,7 +28,10 @@ const FILES: [&str; 20] = [
     "members.nc",
     "ensemble.json",
     "ensemble.nc",
+    LEFT,
 ];
+/// The list of the files that a finished run left ([`Folder::list`]).
+const LEFT: &str = "checkpoint/files.json";
 const SIGNS: usize = 5;
 const FOLDERS: [&str; 4] = ["figures", "members", "rasters", "vtk"];
 /// Where the files of an earlier run go.
@@ -127,6 +131,57 @@ impl Folder {
             }
         }
         Ok(Some(aside))
+    }
+
+    /// Lists the files of a finished run with lengths and checksums, so that a lost or changed one is noticed.
+    ///
+    /// # Errors
+    /// [`Error::Io`] naming the file that cannot be read.
+    pub fn list(&self) -> Result<(), Error> {
+        let mut names: Vec<String> = FILES.map(str::to_owned).into();
+        names.retain(|name| name != LEFT && !name.ends_with("frames.bin") && self.path.join(name).exists());
+        for folder in FOLDERS.iter().filter(|name| self.path.join(name).is_dir()) {
+            let within = self.path.join(folder);
+            for entry in fs::read_dir(&within).map_err(Error::io(&within, "list"))? {
+                let name = entry.map_err(Error::io(&within, "list"))?.file_name();
+                names.push(format!("{folder}/{}", name.to_string_lossy()));
+            }
+        }
+        names.sort();
+        let files: Result<Vec<Input>, Error> =
+            names.iter().map(|name| Input::of(&self.path.join(name), Path::new(name))).collect();
+        let files = files?;
+        whole_file(&self.path.join(LEFT), |out| serde_json::to_writer(out, &files).map_err(io::Error::from))
+    }
+
+    /// How many files a finished run left, and what became of those that are not as it left them.
+    ///
+    /// # Errors
+    /// [`Error::Io`] naming the file that cannot be read.
+    pub fn lost(&self) -> Result<(usize, Vec<String>), Error> {
+        let path = self.path.join(LEFT);
+        let listed = fs::read_to_string(&path).ok().and_then(|text| serde_json::from_str(&text).ok());
+        let Some(listed): Option<Vec<Input>> = listed else {
+            return Ok((0, vec![format!("{LEFT}, the list of the files, is gone or damaged")]));
+        };
+        let mut lost = Vec::new();
+        for file in &listed {
+            let path = self.path.join(&file.name);
+            if !path.is_file() {
+                lost.push(format!("{} is gone", file.name));
+                continue;
+            }
+            let now = Input::of(&path, Path::new(&file.name))?;
+            if now.bytes != file.bytes {
+                lost.push(format!(
+                    "{} has {} bytes, {} when the run left it",
+                    file.name, now.bytes, file.bytes
+                ));
+            } else if now != *file {
+                lost.push(format!("{} is altered", file.name));
+            }
+        }
+        Ok((listed.len(), lost))
     }
 
     /// Removes what [`Folder::take`] made, for a run that could not begin.

@@ -6,7 +6,7 @@ use std::fs::File;
 use std::io::Read;
 use std::path::{Path, PathBuf};
 
-/// A file that a run was made of.
+/// A file that a run was made of, or that it left.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Input {
     /// Its name, as the case writes it.
@@ -40,19 +40,22 @@ pub fn inputs(paths: &[PathBuf], name: impl Fn(&Path) -> PathBuf) -> Result<Vec<
     all.extend_from_slice(paths);
     all.sort();
     all.dedup();
-    all.iter().map(|path| input(path, &name(path))).collect()
+    all.iter().map(|path| Input::of(path, &name(path))).collect()
 }
 
-fn input(path: &Path, name: &Path) -> Result<Input, Error> {
-    let mut file = File::open(path).map_err(Error::io(path, "read"))?;
-    let (mut crc, mut bytes, mut part) = (crc32fast::Hasher::new(), 0, vec![0; 1 << 18]);
-    loop {
-        let read = file.read(&mut part).map_err(Error::io(path, "read"))?;
-        if read == 0 {
-            return Ok(Input { name: name.to_string_lossy().into_owned(), bytes, crc: crc.finalize() });
+impl Input {
+    /// The file at `path`, called `name`.
+    pub(super) fn of(path: &Path, name: &Path) -> Result<Input, Error> {
+        let mut file = File::open(path).map_err(Error::io(path, "read"))?;
+        let (mut crc, mut bytes, mut part) = (crc32fast::Hasher::new(), 0, vec![0; 1 << 18]);
+        loop {
+            let read = file.read(&mut part).map_err(Error::io(path, "read"))?;
+            if read == 0 {
+                return Ok(Input { name: name.to_string_lossy().into_owned(), bytes, crc: crc.finalize() });
+            }
+            crc.update(&part[..read]);
+            bytes += read as u64;
         }
-        crc.update(&part[..read]);
-        bytes += read as u64;
     }
 }
 

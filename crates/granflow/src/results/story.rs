@@ -8,6 +8,7 @@ use crate::output::figures::short;
 use crate::output::ledger::Ledger;
 use crate::output::report;
 use crate::output::summary::Summary;
+use granflow_case::open_file;
 use std::path::Path;
 use std::sync::Arc;
 
@@ -90,7 +91,7 @@ impl<'r> Story<'r> {
     /// As [`Story::read`].
     pub fn read_with(path: &Path, models: &[&'static Model]) -> Result<Story<'static>, FilesError> {
         let foreign = |problem: String| FilesError::Foreign { path: path.into(), problem };
-        std::fs::File::open(path).map_err(|source| FilesError::Missing { path: path.into(), source })?;
+        open_file(path).map_err(|source| FilesError::Missing { path: path.into(), source })?;
         let file = ResultFile::open(path).map_err(foreign)?;
         let (model, pictures) = model(&file, models).map_err(foreign)?;
         let plane = plane(&file, pictures).map_err(foreign)?;

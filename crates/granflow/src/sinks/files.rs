@@ -1,6 +1,7 @@
 //! The disk as a sink: frames, ledger and checkpoints while a run goes, all files that its case asks for at the end.
 
 mod checkpoints;
+mod ended;
 mod ending;
 mod series;
 mod writer;
@@ -54,12 +55,29 @@ pub enum BeginError {
         problem: String,
     },
     /// The run in the folder has ended, and nothing of it is left to do.
-    #[error("{}: this run has ended ({}), there is nothing to go on with", directory.display(), summary.stop_reason)]
+    #[error("{}: this run has ended ({}), and all {files} files that it left are whole", directory.display(), summary.stop_reason)]
     Ended {
         /// The folder.
         directory: PathBuf,
+        /// How many files it left.
+        files: usize,
         /// How it ended.
         summary: Box<Summary>,
+    },
+    /// The run in the folder has ended, files of it are lost or changed, and they cannot be made again.
+    #[error(
+        "{}: this run has ended ({reason}), but {lost}, and they cannot be made again: {problem}; put them back as they were, or compute the run anew by the same command without --resume, which moves what is here into previous/",
+        directory.display()
+    )]
+    Lost {
+        /// The folder.
+        directory: PathBuf,
+        /// How it ended.
+        reason: StopReason,
+        /// What became of which files.
+        lost: String,
+        /// Why they cannot be made again.
+        problem: String,
     },
 }
 
@@ -87,9 +105,10 @@ pub struct Files {
     cost: f64,
     saving: bool,
     pause: f64,
-    /// When the series were last joined and what it cost \[s\]; `None` while they are
-    /// being joined.
+    /// When the series were last joined and what it cost \[s\]; `None` while they are being joined.
     joined: Option<(Instant, f64)>,
+    /// What happened to the files before the first step.
+    notice: Option<String>,
 }
 
 impl Files {
@@ -143,9 +162,12 @@ impl Files {
         let mut series = Series::new(Watch::of(plan, run).map_err(Box::new)?, plan.watched.every, run);
         run.stepper_mut().release_buffers();
         let taken = checkpoints::read(&saved, &origin, run)?;
-        if let (Some(_), Some(summary)) = (taken.ended, ended(directory)?) {
-            return Err(BeginError::Ended { directory: directory.to_owned(), summary: Box::new(summary) });
-        }
+        let notice = match taken.ended {
+            Some(reason) if !frames_in(directory).exists() => {
+                Some(ended::taken_up(&folder, plan, run, reason, taken.marks.frames)?)
+            }
+            _ => None,
+        };
         let [frames, ledger] = [frames_in(directory), ledger_in(directory)];
         let tables = series.paths(directory);
         for path in [&frames, &ledger].into_iter().chain(tables.iter().flatten()) {
@@ -164,6 +186,7 @@ impl Files {
         series.resumed(look, run.time());
         let mut files = Self::over(folder, plan, origin, command, run, (frames, ledger, tables), series)?;
         files.schedule.resume([frame, line]);
+        files.notice = notice;
         Ok(files)
     }
 
@@ -201,7 +224,14 @@ impl Files {
             saving: false,
             pause: PAUSES[0],
             joined: Some((now, 0.0)),
+            notice: None,
         })
+    }
+
+    /// What happened to the files of an earlier run when this one took them up, in a sentence.
+    #[must_use]
+    pub fn notice(&self) -> Option<&str> {
+        self.notice.as_deref()
     }
 
     /// Count wall time from then on: reading and setting up take their time too.
@@ -359,15 +389,6 @@ impl Sink for Files {
         }
         self.step_taken(run, due).map_err(SinkError::of)
     }
-}
-
-/// How the run in a folder ended, where all its files are made and its frames are not kept any more.
-fn ended(directory: &Path) -> Result<Option<Summary>, output::Error> {
-    let (summary, result) = (directory.join("summary.json"), directory.join("result.nc"));
-    if frames_in(directory).exists() || !summary.exists() || !result.exists() {
-        return Ok(None);
-    }
-    Summary::read(&summary).map(Some)
 }
 
 fn frames_in(directory: &Path) -> PathBuf {

@@ -76,7 +76,8 @@ fn a_run_that_has_ended_keeps_no_second_copy_and_is_not_resumed() {
     assert!(!out.join("checkpoint/frames.bin").exists());
     let result = fs::read(out.join("result.nc")).unwrap();
     match begin(&case, &out, true, &mut |_| false) {
-        Err(RunError::Begin(BeginError::Ended { summary: again, .. })) => {
+        Err(RunError::Begin(BeginError::Ended { summary: again, files, .. })) => {
+            assert_eq!(files, 4, "checkpoint, ledger, result, summary");
             assert_eq!((again.stop_reason, again.steps), (summary.stop_reason, summary.steps));
         }
         other => panic!("{other:?}"),
@@ -84,11 +85,89 @@ fn a_run_that_has_ended_keeps_no_second_copy_and_is_not_resumed() {
     assert!(fs::read(out.join("result.nc")).unwrap() == result);
     fs::remove_file(out.join("result.nc")).unwrap();
     let lost = begin(&case, &out, true, &mut |_| false).unwrap_err().to_string();
-    assert!(lost.contains("frames.bin is gone") && lost.contains("without --resume"), "{lost}");
+    assert!(lost.contains("result.nc is gone") && lost.contains("without --resume"), "{lost}");
+    assert!(!out.join("checkpoint/frames.bin").exists());
 
     let part = begin(&case, &out, false, &mut |run| run.steps() == 3).unwrap().close().unwrap();
     assert_eq!(part.stop_reason, StopReason::Interrupted);
     assert!(out.join("checkpoint/frames.bin").exists(), "an interrupted run goes on from its frames");
+}
+
+/// Files of a finished run that are lost or changed are made again to the same bytes, from what `result.nc` holds.
+#[test]
+fn lost_files_of_a_finished_run_are_made_again() {
+    let folder = tempfile::tempdir().unwrap();
+    let case = slope(folder.path(), r#"["netcdf", "geotiff", "csv", "report"]"#);
+    let out = folder.path().join("out");
+    begin(&case, &out, false, &mut |_| false).unwrap().close().unwrap();
+    let names =
+        ["maps.csv", "rasters/deposit.tif", "figures/deposit.png", "mass.csv"].map(|name| out.join(name));
+    let sound = names.clone().map(|name| fs::read(name).unwrap());
+    let state = |out: &Path| -> Vec<Vec<u8>> {
+        let file = NcFile::open(out.join("result.nc")).unwrap();
+        let names: Vec<String> = file.variables().unwrap().iter().map(|one| one.name.clone()).collect();
+        names.iter().map(|name| file.read_variable_raw_bytes(name).unwrap()).collect()
+    };
+    let result = state(&out);
+    let append = |path: &Path| {
+        let mut bytes = fs::read(path).unwrap();
+        bytes.extend(b"more");
+        fs::write(path, bytes).unwrap();
+    };
+    let losses: [&dyn Fn(); 6] = [
+        &|| fs::remove_file(out.join("maps.csv")).unwrap(),
+        &|| append(&out.join("rasters/deposit.tif")),
+        &|| fs::remove_dir_all(out.join("figures")).unwrap(),
+        &|| fs::remove_file(out.join("summary.json")).unwrap(),
+        &|| append(&out.join("result.nc")),
+        &|| fs::remove_file(out.join("checkpoint/files.json")).unwrap(),
+    ];
+    for (k, lose) in losses.iter().enumerate() {
+        lose();
+        let again = begin(&case, &out, true, &mut |_| false).unwrap_or_else(|error| panic!("{k}: {error}"));
+        assert_eq!(again.close().unwrap().stop_reason, StopReason::AtRest);
+        for (name, bytes) in names.iter().zip(&sound) {
+            assert!(fs::read(name).unwrap() == *bytes, "{k}: {} differs", name.display());
+        }
+        assert!(state(&out) == result, "{k}: result.nc differs");
+        let whole = begin(&case, &out, true, &mut |_| false).map(|_| ()).unwrap_err().to_string();
+        assert!(whole.contains("files that it left are whole"), "{whole}");
+    }
+}
+
+/// What cannot be made again is named, with what helps.
+#[test]
+fn what_a_finished_run_cannot_do_without_is_named() {
+    let folder = tempfile::tempdir().unwrap();
+    let case = slope(folder.path(), r#"["netcdf"]"#);
+    let out = folder.path().join("out");
+    begin(&case, &out, false, &mut |_| false).unwrap().close().unwrap();
+    let refused = |name: &str, change: &dyn Fn(&mut Vec<u8>), words: &[&str]| {
+        let sound = fs::read(out.join(name)).unwrap();
+        let mut bytes = sound.clone();
+        change(&mut bytes);
+        fs::write(out.join(name), bytes).unwrap();
+        let message = begin(&case, &out, true, &mut |_| false).map(|_| ()).unwrap_err().to_string();
+        for part in words.iter().chain(&[name, "without --resume"]) {
+            assert!(message.contains(part), "{message}");
+        }
+        fs::write(out.join(name), sound).unwrap();
+    };
+    refused("result.nc", &|bytes| bytes.truncate(500), &["has 500 bytes"]);
+    assert!(!out.join("checkpoint/frames.bin").exists());
+    // One bit of the thickness where the release begins.
+    let file = NcFile::open(out.join("result.nc")).unwrap();
+    let thickness = file.read_variable_raw_bytes("thickness").unwrap();
+    let release = thickness.chunks(64).find(|cells| cells.chunks(8).all(|cell| cell[7] != 0)).unwrap();
+    let flip = |bytes: &mut Vec<u8>| {
+        let place = bytes.windows(64).position(|window| window == release).unwrap();
+        bytes[place + 5] ^= 1;
+    };
+    refused("result.nc", &flip, &["is altered", "not those of the run"]);
+    refused("mass.csv", &|bytes| bytes.truncate(300), &["lines below its header"]);
+    drop(begin(&case, &out, true, &mut |_| false).unwrap().close().unwrap());
+    let whole = begin(&case, &out, true, &mut |_| false).map(|_| ()).unwrap_err().to_string();
+    assert!(whole.contains("files that it left are whole"), "{whole}");
 }
 
 /// What a run goes on from must be what it left: elevation, frames and ledger.

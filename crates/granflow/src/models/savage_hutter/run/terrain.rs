@@ -319,7 +319,7 @@ fn add(loaded: &mut Loaded, one: &Release, crs: Option<&Crs>) -> Result<(), Star
             (path.display().to_string(), system, layer.thickness(&thickness, bed)?)
         }
         Extent::Raster(path) => {
-            let reading = Reading::of(path, bed.crs.as_ref().or(crs))?;
+            let reading = Reading::on_terrain(path, bed.crs.as_ref().or(crs))?;
             loaded.remarks.extend(reading.notes);
             let system = Some(described(reading.raster.crs.as_ref()));
             (path.display().to_string(), system, release::carried(path, &reading.raster, bed)?)
