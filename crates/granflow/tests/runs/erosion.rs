@@ -129,6 +129,8 @@ fn resumes(folder: &Path, parts: &str) {
     let mut whole = start(folder, parts, "end = 60.0");
     steps(&mut *whole, 50);
     let mut part = start(folder, parts, "end = 60.0");
+    // One that has gone further takes the state up as well as one that has just begun.
+    steps(&mut *part, 80);
     part.restore(whole.save().into_owned()).unwrap();
     steps(&mut *whole, 60);
     steps(&mut *part, 60);

@@ -4,7 +4,9 @@ use super::between::BetweenSteps;
 use super::parameters::InCells;
 use super::supply::{REACHES, give};
 use crate::run::{Maps, Numbers};
+use granflow_case::terrain::Entrainment;
 use granflow_engine::simulation::Simulation;
+use granflow_geo::raster::Raster;
 use granflow_model::savage_hutter::Flow;
 use granflow_model::savage_hutter::erosion::{ErodibleLayer, Erosion, FlowOver};
 use granflow_model::savage_hutter::friction::{AnyLaw, LocalFriction};
@@ -14,23 +16,43 @@ use std::sync::Arc;
 
 /// An erodible layer on a mountain.
 pub(super) struct Erodible {
-    pub law: Erosion,
+    law: Erosion,
     /// What resists the flow at the bed.
-    pub friction: AnyLaw,
-    pub parameters: Arc<InCells>,
+    friction: AnyLaw,
+    parameters: Arc<InCells>,
     /// Density of the flow and of the layer \[kg/m^3\].
-    pub densities: [f64; 2],
+    densities: [f64; 2],
     /// Depth of the layer at the start in every cell, normal to the bed \[m\]; 0 outside the data.
-    pub whole: Vec<f64>,
+    whole: Vec<f64>,
     /// Depth taken so far \[m\].
-    pub taken: Vec<f64>,
+    taken: Vec<f64>,
     /// Elevation of the bed at the start \[m\], where it sinks; empty where it does not.
-    pub level: Vec<f64>,
+    level: Vec<f64>,
     /// The time up to which the flow has picked up what it can; the volume of the layer that it has \[m^3\].
-    pub until: f64,
+    until: f64,
 }
 
 impl Erodible {
+    /// Of these depths, under a flow of this density \[kg/m^3\] and law.
+    pub fn of(
+        entrainment: &Entrainment,
+        whole: Vec<f64>,
+        (friction, parameters): (AnyLaw, Arc<InCells>),
+        density: f64,
+        bed: &Raster,
+    ) -> Self {
+        Erodible {
+            law: entrainment.law,
+            friction,
+            parameters,
+            densities: [density, entrainment.density],
+            level: if entrainment.lower_bed { bed.values.clone() } else { Vec::new() },
+            taken: vec![0.0; whole.len()],
+            whole,
+            until: 0.0,
+        }
+    }
+
     /// The depth that the flow of a cell takes in `dt`, if it takes any.
     fn depth(
         &self,
@@ -115,7 +137,7 @@ where
         let [until, taken @ ..] = saved else { return false };
         self.until = *until;
         self.taken.copy_from_slice(taken);
-        self.lower(simulation, (0..self.taken.len()).filter(|cell| self.taken[*cell] > 0.0));
+        self.lower(simulation, (0..self.whole.len()).filter(|cell| self.whole[*cell] > 0.0));
         true
     }
 

@@ -1,6 +1,7 @@
 //! A forest that breaks under the pressure of the flow and resists it no more.
 
 use super::between::BetweenSteps;
+use super::parameters::InCells;
 use super::supply::REACHES;
 use crate::run::{Maps, Numbers};
 use granflow_engine::simulation::Simulation;
@@ -8,25 +9,25 @@ use granflow_model::savage_hutter::Flow;
 use granflow_model::savage_hutter::friction::Parameters;
 use granflow_model::savage_hutter::ground::Bed;
 use granflow_model::scheme::Scheme;
+use std::sync::Arc;
 
 /// A forest that can break.
 pub(super) struct Forest {
     /// Density of the flow \[kg/m^3\].
-    pub density: f64,
+    density: f64,
     /// The dynamic pressure rho |V|^2 that breaks it \[Pa\].
-    pub strength: f64,
+    strength: f64,
+    /// What stands in each cell at the start.
+    parameters: Arc<InCells>,
     /// The time at which it broke in each cell; not a number where it stands or there is none.
-    pub broken: Vec<f64>,
+    broken: Vec<f64>,
 }
 
 impl Forest {
-    /// Take it away in these cells.
-    fn clear<S>(simulation: &mut Simulation<2, S>, cells: impl Iterator<Item = usize>)
-    where
-        S: Scheme<2, f64, Forcing = Parameters<f64>>,
-    {
-        let grid = *simulation.grid();
-        simulation.apply_to(cells.map(|cell| grid.index(cell)), Parameters::on_bare_bed);
+    /// One that breaks under the pressure `strength` \[Pa\] of a flow of this density \[kg/m^3\].
+    pub fn of(strength: f64, density: f64, parameters: Arc<InCells>) -> Self {
+        let broken = vec![f64::NAN; parameters.count()];
+        Forest { density, strength, parameters, broken }
     }
 }
 
@@ -47,7 +48,8 @@ where
         for cell in &broken {
             self.broken[*cell] = time;
         }
-        Self::clear(simulation, broken.into_iter());
+        let grid = *simulation.grid();
+        simulation.apply_to(broken.into_iter().map(|cell| grid.index(cell)), Parameters::on_bare_bed);
     }
 
     fn save(&self) -> Vec<f64> {
@@ -56,7 +58,12 @@ where
 
     fn restore(&mut self, simulation: &mut Simulation<2, S>, saved: &[f64]) -> bool {
         self.broken.copy_from_slice(saved);
-        Self::clear(simulation, (0..saved.len()).filter(|cell| !saved[*cell].is_nan()));
+        let columns = simulation.grid().cells[0];
+        simulation.apply(|[i, j], _| {
+            let cell = j * columns + i;
+            let standing = self.parameters.at(cell);
+            if self.broken[cell].is_nan() { standing } else { standing.on_bare_bed() }
+        });
         true
     }
 

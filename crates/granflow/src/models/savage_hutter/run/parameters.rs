@@ -43,6 +43,11 @@ impl InCells {
         Ok(cells)
     }
 
+    /// The number of cells for which something differs.
+    pub fn count(&self) -> usize {
+        self.fields.first().map_or(0, |(_, values)| values.len())
+    }
+
     /// Number `k` of the law in a cell. (The first one, with which others are compared, is as a case writes it.)
     fn number(&self, k: usize, cell: usize) -> f64 {
         self.fields

@@ -86,36 +86,16 @@ pub(super) fn simulate(
         size: [bed.cell; 2],
         boundary: [[Boundary::Absorbing; 2]; 2],
     };
-    let all =
-        supply.late.iter().fold(release.clone(), |all, late| all.plus(late.cells.iter().copied().collect()));
-    let thickness = all.map(|cell, volume| volume * terrain.fit(bed.place(cell)).cosine());
-    let inlets = supply.inflows.iter().flat_map(|inflow| &inflow.inlets).map(|inlet| inlet.cell);
-    // The grounds hold the elevation from here on.
-    let domain = TerrainDomain {
-        raster: Arc::new(bed.with_values(Vec::new())),
-        release: Arc::new(thickness),
-        inlets: inlets.collect(),
-        density: plan.material.density,
-        threshold: run.output.threshold,
-        curvature: curvature_of(plan),
-        remarks,
-    };
-    let plane = Plane::of(&grid, Arc::new(domain));
+    let plane = Plane::of(&grid, Arc::new(domain(run, plan, (&terrain, &release, &supply), remarks)));
     let film = plan.scheme.film;
     // What comes later and what is picked up bring a head of their own.
     let grows = !supply.is_empty() || layer.as_ref().is_some_and(|(_, volume)| *volume > 0.0);
     let Material { pressure_coefficient, passive_coefficient, .. } = plan.material;
     let ceiling = if grows { f64::MAX } else { gravity * ceiling(&terrain, pressure_coefficient, &release) };
     let compression = Compression::of([pressure_coefficient, passive_coefficient], film);
-    let erodible = plan.entrainment.as_ref().zip(layer).map(|(entrainment, (whole, _))| Erodible {
-        law: entrainment.law,
-        friction: material.law,
-        parameters: parameters.clone(),
-        densities: [plan.material.density, entrainment.density],
-        level: if entrainment.lower_bed { terrain.bed.values.clone() } else { Vec::new() },
-        taken: vec![0.0; whole.len()],
-        whole,
-        until: 0.0,
+    let density = plan.material.density;
+    let erodible = plan.entrainment.as_ref().zip(layer).map(|(entrainment, (whole, _))| {
+        Erodible::of(entrainment, whole, (material.law, parameters.clone()), density, &terrain.bed)
     });
     let ground = move |cell| ground_at(&terrain, gravity, cell).with_pressure(pressure_coefficient);
     let state = move |[i, j]: [usize; 2]| Flow::still(release.get(j * columns + i));
@@ -130,13 +110,9 @@ pub(super) fn simulate(
                 unreachable!("a case with these schemes has a law of the loops")
             }
         };
-        let of_cell = move |[i, j]: [usize; 2], _| parameters.at(j * columns + i);
-        let forest = plan.forest_breaks_at.map(|strength| Forest {
-            density: plan.material.density,
-            strength,
-            broken: vec![f64::NAN; grid.count()],
-        });
+        let forest = plan.forest_breaks_at.map(|strength| Forest::of(strength, density, parameters.clone()));
         let forest = forest.map(|forest| Box::new(forest) as _);
+        let of_cell = move |[i, j]: [usize; 2], _| parameters.at(j * columns + i);
         return begin.with(scheme.below(ceiling), ground, state, (of_cell, forest));
     };
     match plan.scheme.name {
@@ -150,6 +126,30 @@ pub(super) fn simulate(
         TerrainScheme::EnergyStable2 => {
             begin.with(EnergyStable::second(law, film).below(ceiling), ground, state, (|_, ()| (), None))
         }
+    }
+}
+
+/// What files and figures must know of a mountain.
+fn domain(
+    run: &RunPlan,
+    plan: &Plan,
+    (terrain, release, supply): (&Terrain, &Sparse, &Supply),
+    remarks: Vec<Remark>,
+) -> TerrainDomain {
+    let bed = &terrain.bed;
+    let all =
+        supply.late.iter().fold(release.clone(), |all, late| all.plus(late.cells.iter().copied().collect()));
+    let thickness = all.map(|cell, volume| volume * terrain.fit(bed.place(cell)).cosine());
+    let inlets = supply.inflows.iter().flat_map(|inflow| &inflow.inlets).map(|inlet| inlet.cell);
+    TerrainDomain {
+        // The grounds hold the elevation.
+        raster: Arc::new(bed.with_values(Vec::new())),
+        release: Arc::new(thickness),
+        inlets: inlets.collect(),
+        density: plan.material.density,
+        threshold: run.output.threshold,
+        curvature: curvature_of(plan),
+        remarks,
     }
 }
 
