@@ -59,7 +59,7 @@ pub use checked::Checked;
 pub use durations::Durations;
 pub use fault::{CaseError, CaseErrorKind};
 pub use file_kind::FileKind;
-pub use files::{FileAccess, NoFiles, Outline};
+pub use files::{FileAccess, NoFiles, Outline, on_disk};
 pub use formula::{Formula, FormulaError};
 pub use grid::{Axis, Grid, Places, Points};
 pub use kinds::*;

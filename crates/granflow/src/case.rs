@@ -1,6 +1,9 @@
 //! The case file of a run: what [`granflow_case`] reads, joined with the files of the world and the models.
 
-use crate::disk::Disk;
+use crate::access::Access;
+#[cfg(feature = "files")]
+use crate::access::file_kinds;
+use crate::inputs::Inputs;
 use crate::models;
 use crate::run::{Exceeded, Run, What};
 pub use crate::start_error::StartError;
@@ -14,7 +17,7 @@ pub struct Case(granflow_case::Case);
 
 /// A case that was checked; [`Checked::start`] gives the run.
 #[derive(Debug)]
-pub struct Checked(granflow_case::Checked);
+pub struct Checked(granflow_case::Checked, Inputs);
 
 impl Deref for Case {
     type Target = granflow_case::Case;
@@ -59,7 +62,14 @@ impl Case {
     /// # Errors
     /// [`CaseError`] for the first thing that is wrong; its kind is `File` where a file cannot be read.
     pub fn check(&self) -> Result<Checked, CaseError> {
-        self.0.check(&Disk).map(Checked)
+        self.check_with(&Inputs::default())
+    }
+    /// The same with files and rasters in memory that the case names.
+    ///
+    /// # Errors
+    /// As [`Case::check`].
+    pub fn check_with(&self, inputs: &Inputs) -> Result<Checked, CaseError> {
+        Ok(Checked(self.0.check(&Access(inputs))?, inputs.clone()))
     }
 }
 
@@ -68,6 +78,10 @@ impl Checked {
     #[must_use]
     pub fn plan(&self) -> &RunPlan {
         &self.0.run
+    }
+    /// The files in memory that it may name.
+    pub(crate) fn inputs(&self) -> &Inputs {
+        &self.1
     }
     /// What only this kind of case has.
     #[must_use]
@@ -79,8 +93,8 @@ impl Checked {
     /// # Errors
     /// [`StartError`] at the first file or key that cannot be used.
     pub fn start(self) -> Result<Box<dyn Run>, StartError> {
-        let granflow_case::Checked { run, kind } = self.0;
-        let mut started = models::start(&run, kind)?;
+        let Checked(granflow_case::Checked { run, kind }, inputs) = self;
+        let mut started = models::start(&run, kind, &inputs)?;
         started.track_durations(&exceeded(&run.output.durations));
         Ok(started)
     }
@@ -89,8 +103,8 @@ impl Checked {
     /// # Errors
     /// As [`Checked::start`].
     pub fn describe(self) -> Result<Vec<(&'static str, String)>, StartError> {
-        let granflow_case::Checked { run, kind } = self.0;
-        models::describe(&run, kind)
+        let Checked(granflow_case::Checked { run, kind }, inputs) = self;
+        models::describe(&run, kind, &inputs)
     }
 }
 
@@ -107,5 +121,5 @@ fn exceeded(durations: &Durations) -> Vec<Exceeded> {
 #[cfg(feature = "files")]
 #[must_use]
 pub fn json_schema() -> serde_json::Value {
-    granflow_case::json_schema(Disk.kinds())
+    granflow_case::json_schema(file_kinds())
 }

@@ -5,6 +5,7 @@ pub mod savage_hutter;
 
 use crate::StartError;
 use crate::describe::Line;
+use crate::inputs::Inputs;
 use crate::model::Model;
 use crate::run::Run;
 #[cfg(all(feature = "geo", feature = "threads"))]
@@ -18,11 +19,12 @@ pub static MODELS: &[&Model] = &[
 ];
 
 /// The run of a checked case.
-pub(crate) fn start(run: &RunPlan, kind: Kind) -> Result<Box<dyn Run>, StartError> {
+pub(crate) fn start(run: &RunPlan, kind: Kind, inputs: &Inputs) -> Result<Box<dyn Run>, StartError> {
+    let _ = inputs; // of no use without the feature `geo`
     match kind {
         Kind::Chute(plan) => savage_hutter::run::chute::start(run, &plan),
         #[cfg(feature = "geo")]
-        Kind::Terrain(plan) => savage_hutter::run::terrain::start(run, &plan),
+        Kind::Terrain(plan) => savage_hutter::run::terrain::start(run, &plan, inputs),
         #[cfg(not(feature = "geo"))]
         Kind::Terrain(_) => Err(StartError::Feature { feature: "geo" }),
         Kind::Sandpile(plan) => hadeler_kuttler::run::start::start(run, plan),
@@ -30,11 +32,12 @@ pub(crate) fn start(run: &RunPlan, kind: Kind) -> Result<Box<dyn Run>, StartErro
 }
 
 /// What a checked case would compute.
-pub(crate) fn describe(run: &RunPlan, kind: Kind) -> Result<Vec<Line>, StartError> {
+pub(crate) fn describe(run: &RunPlan, kind: Kind, inputs: &Inputs) -> Result<Vec<Line>, StartError> {
+    let _ = inputs;
     match kind {
         Kind::Chute(plan) => savage_hutter::run::describe::chute(run, &plan),
         #[cfg(feature = "geo")]
-        Kind::Terrain(plan) => savage_hutter::run::describe::terrain(run, &plan),
+        Kind::Terrain(plan) => savage_hutter::run::describe::terrain(run, &plan, inputs),
         #[cfg(not(feature = "geo"))]
         Kind::Terrain(_) => Err(StartError::Feature { feature: "geo" }),
         Kind::Sandpile(plan) => Ok(hadeler_kuttler::run::describe::lines(run, &plan)),

@@ -6,7 +6,8 @@ use crate::output::folder::Folder;
 use crate::output::frames::Frames;
 use crate::output::summary::{StopReason, Summary};
 use crate::results::Finished;
-use crate::run::{Entry, Maps, Run, Until, mass_error, sum};
+use crate::results::reckoning;
+use crate::run::{Entry, Maps, Run};
 use granflow_case::FileKind;
 use std::path::PathBuf;
 
@@ -43,8 +44,7 @@ impl Ending {
         Ending::with(files, plane, maps, summary)
     }
 
-    fn with(files: &Files, plane: Plane, maps: Maps, mut summary: Summary) -> Ending {
-        count(&maps, &mut summary);
+    fn with(files: &Files, plane: Plane, maps: Maps, summary: Summary) -> Ending {
         Ending {
             directory: files.folder.path().to_owned(),
             files: files.plan.output.files.clone(),
@@ -65,78 +65,11 @@ impl Ending {
     /// Put it together; `folder` keeps its lock for as long as files are made.
     pub fn finished(self, folder: Option<Folder>, frames: Frames, ledger: Vec<Entry>) -> Finished {
         let Ending { directory, files, case, case_text, plane, mut maps, series, mut summary } = self;
-        plane.derive(&mut maps, &mut summary);
-        summary.warnings = (plane.model().warnings)(plane.model(), &summary);
+        reckoning::complete(&plane, &mut maps, &mut summary);
         Finished { directory, folder, files, case, case_text, plane, frames, ledger, maps, series, summary }
     }
 }
 
-/// Put the largest of the maps of peaks and times, in which films do not count, for the figures of the run.
-fn count(maps: &Maps, summary: &mut Summary) {
-    let largest = |map: &str| -> Option<f64> {
-        let (_, values) = maps.iter().find(|(name, _)| *name == map)?;
-        Some(values.iter().copied().fold(f64::NAN, f64::max))
-    };
-    if let Some(speed) = largest("peak_speed") {
-        summary.max_speed = speed.max(0.0);
-    }
-    if let Some(time) = largest("stopping_time") {
-        summary.stopping_time = summary.stopping_time.map(|_| time).filter(|time| time.is_finite());
-    }
-}
-
-/// The figures of the run as they stand; those that the maps know better follow in [`count`].
-fn summary(files: &Files, run: &dyn Run, stop_reason: StopReason) -> Summary {
-    let (stepper, record, plan, plane) = (run.stepper(), run.record(), &files.plan, run.plane());
-    let totals = run.totals();
-    let out = stepper.outflow();
-    let (gone, mass_in, initial) = (sum(out), stepper.poured(), record.initial);
-    let wall = files.begun.elapsed().as_secs_f64();
-    let speed = |speed: f64| if run.has_speed() { speed } else { f64::NAN };
-    let mut summary = Summary {
-        title: plan.title.clone(),
-        model: plan.model.to_owned(),
-        scheme: run.scheme().to_owned(),
-        cells: (plane.x.len() * plane.y.len().max(1)) as u64,
-        steps: run.steps(),
-        time: run.time(),
-        stop_reason,
-        threshold: run.threshold(),
-        stopping_time: (stop_reason.is_rest() && !run.is_equilibrium()).then(|| run.time()),
-        mass_initial: initial,
-        mass_final: totals.volume,
-        mass_in,
-        mass_out: gone,
-        mass_error: mass_error(run, &totals),
-        film_volume: totals.film,
-        max_speed_final: speed(totals.speed),
-        max_speed: speed(record.peak_speed),
-        runout: None,
-        reach_angle: None,
-        wall_seconds: wall,
-        stepping_seconds: record.stepping.as_secs_f64(),
-        cell_updates_per_second: (stepper.updates() - files.updates) as f64 / wall,
-        threads: rayon::current_num_threads() as u64,
-        version: env!("CARGO_PKG_VERSION").to_owned(),
-        warnings: Vec::new(),
-        extra: serde_json::Map::new(),
-    };
-    for (name, value) in plane.outlets().iter().zip(out) {
-        summary.add(&format!("mass_out_{name}"), value);
-    }
-    for (name, value) in run.numbers() {
-        summary.add(&name, value);
-    }
-    let durations = plan.output.durations;
-    for (name, threshold) in
-        [("thickness", durations.thickness), ("speed", durations.speed), ("pressure", durations.pressure)]
-    {
-        if let Some(threshold) = threshold {
-            summary.add(&format!("duration_{name}_threshold"), threshold);
-        }
-    }
-    if let Some(Until::Steady { rate }) = plan.ends.until {
-        summary.add("steady_rate", rate);
-    }
-    summary
+fn summary(files: &Files, run: &dyn Run, reason: StopReason) -> Summary {
+    reckoning::summary(&files.plan, run, reason, files.start)
 }

@@ -5,6 +5,7 @@ use super::flowing::Flowing;
 use super::parameters::InCells;
 use super::supply::{Inflow, Inlet, Late, Supply};
 use crate::StartError;
+use crate::inputs::Inputs;
 use crate::memory::fits;
 use crate::model::Plane;
 use crate::run::{Run, Simulated, step_size};
@@ -15,7 +16,7 @@ use granflow_engine::grid::Grid;
 use granflow_engine::kernels::Kernel;
 use granflow_engine::simulation::Simulation;
 use granflow_geo::Remark;
-use granflow_geo::raster::{Crs, Raster, Reading};
+use granflow_geo::raster::{Crs, Raster};
 use granflow_geo::release::{self, Sparse};
 use granflow_geo::terrain::{Curvature, Survey, Terrain};
 use granflow_model::savage_hutter::balanced::Balanced;
@@ -28,8 +29,8 @@ use std::sync::Arc;
 const MAX_CELLS: f64 = (1_u64 << 36) as f64;
 
 /// The run of a case on a mountain.
-pub(crate) fn start(run: &RunPlan, plan: &Plan) -> Result<Box<dyn Run>, StartError> {
-    simulate(run, plan, load(run, plan)?)
+pub(crate) fn start(run: &RunPlan, plan: &Plan, inputs: &Inputs) -> Result<Box<dyn Run>, StartError> {
+    simulate(run, plan, load(run, plan, inputs)?)
 }
 
 /// A mountain and what is released on it, as they were read.
@@ -184,9 +185,9 @@ pub(crate) fn ground_at(
 }
 
 /// Reads the elevation and the releases.
-pub(super) fn load(run: &RunPlan, plan: &Plan) -> Result<Loaded, StartError> {
+pub(super) fn load(run: &RunPlan, plan: &Plan, inputs: &Inputs) -> Result<Loaded, StartError> {
     let mut remarks = Vec::new();
-    let (bed, crs, reading) = bed(run, plan, &mut remarks)?;
+    let (bed, crs, reading) = bed(run, plan, inputs, &mut remarks)?;
     let survey = Survey::of(&bed);
     remarks.extend(survey.warnings(&plan.dem.display().to_string()));
     let terrain = curved(run, plan, bed)?;
@@ -195,11 +196,11 @@ pub(super) fn load(run: &RunPlan, plan: &Plan) -> Result<Loaded, StartError> {
     let mut loaded =
         Loaded { terrain, release, parts, remarks, survey, material, parameters, supply, reading };
     for one in &plan.releases {
-        add(&mut loaded, one, crs.as_ref())?;
+        add(&mut loaded, one, inputs, crs.as_ref())?;
     }
     for (number, one) in plan.inflows.iter().enumerate() {
         let key = format!("inflow[{number}]");
-        let inflow = inflow(run, one, &key, &mut loaded)?;
+        let inflow = inflow(run, one, &key, inputs, &mut loaded)?;
         loaded.supply.inflows.push(inflow);
     }
     let volume = loaded.parts.iter().map(|(_, _, volume)| volume).sum();
@@ -210,7 +211,7 @@ pub(super) fn load(run: &RunPlan, plan: &Plan) -> Result<Loaded, StartError> {
         loaded.remarks.push(Remark::Note(text));
     }
     let bed = loaded.terrain.bed.clone();
-    loaded.parameters = InCells::read(run, &material, (&bed, crs.as_ref()), &mut loaded.remarks)?;
+    loaded.parameters = InCells::read(run, &material, inputs, (&bed, crs.as_ref()), &mut loaded.remarks)?;
     loaded.material = material;
     trim();
     Ok(loaded)
@@ -229,6 +230,7 @@ fn trim() {
 fn bed(
     run: &RunPlan,
     plan: &Plan,
+    inputs: &Inputs,
     remarks: &mut Vec<Remark>,
 ) -> Result<(Raster, Option<Crs>, usize), StartError> {
     let crs = match &plan.crs {
@@ -237,7 +239,7 @@ fn bed(
         })?),
         None => None,
     };
-    let reading = Reading::of(&plan.dem, crs.as_ref())?;
+    let reading = inputs.heights(&plan.dem, crs.as_ref())?;
     remarks.extend(reading.notes);
     let held = reading.bytes;
     let bed = part(run, plan, reading.raster)?;
@@ -299,7 +301,7 @@ fn curvature_of(plan: &Plan) -> Curvature {
 }
 
 /// Adds the volume per plan area of one release.
-fn add(loaded: &mut Loaded, one: &Release, crs: Option<&Crs>) -> Result<(), StartError> {
+fn add(loaded: &mut Loaded, one: &Release, inputs: &Inputs, crs: Option<&Crs>) -> Result<(), StartError> {
     let bed = &loaded.terrain.bed;
     let (name, system, cells) = match &one.extent {
         Extent::Polygons { path, thickness } => {
@@ -307,13 +309,13 @@ fn add(loaded: &mut Loaded, one: &Release, crs: Option<&Crs>) -> Result<(), Star
                 Thickness::Constant(value) => release::Thickness::Value(*value),
                 Thickness::Attribute(name) => release::Thickness::Attribute(name.attribute.clone()),
             };
-            let layer = release::Layer::read(path)?;
+            let layer = inputs.layer(path)?;
             loaded.remarks.extend(layer.notes(bed));
             let system = Some(described(layer.crs()));
             (path.display().to_string(), system, layer.thickness(&thickness, bed)?)
         }
         Extent::Raster(path) => {
-            let reading = Reading::of(path, bed.crs.as_ref().or(crs))?;
+            let reading = inputs.heights(path, bed.crs.as_ref().or(crs))?;
             loaded.remarks.extend(reading.notes);
             let system = Some(described(reading.raster.crs.as_ref()));
             (path.display().to_string(), system, release::carried(path, &reading.raster, bed)?)
@@ -353,13 +355,14 @@ fn inflow(
     run: &RunPlan,
     one: &granflow_case::terrain::Inflow,
     key: &str,
+    inputs: &Inputs,
     loaded: &mut Loaded,
 ) -> Result<Inflow, StartError> {
     let bed = &loaded.terrain.bed;
     let cells = match &one.over {
         Over::Line(points) => release::along(points, bed)?,
         Over::Polygons(path) => {
-            let layer = release::Layer::read(path)?;
+            let layer = inputs.layer(path)?;
             loaded.remarks.extend(layer.notes(bed));
             layer.cells(bed)?
         }
