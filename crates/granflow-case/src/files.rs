@@ -36,10 +36,7 @@ pub trait FileAccess {
     /// # Errors
     /// Why it cannot be read.
     fn find(&self, path: &Path) -> io::Result<()> {
-        match std::fs::metadata(path)?.is_file() {
-            true => Ok(()),
-            false => Err(io::Error::new(io::ErrorKind::InvalidInput, "it is not a file")),
-        }
+        on_disk(path)
     }
 
     /// The content of a file.
@@ -55,6 +52,17 @@ pub trait FileAccess {
         let entries = std::fs::read_dir(folder).ok()?.flatten();
         let files = entries.filter(|entry| entry.path().is_file());
         Some(files.map(|entry| entry.file_name().to_string_lossy().into_owned()).collect())
+    }
+}
+
+/// Whether there is a file of this name on the disk.
+///
+/// # Errors
+/// Why it cannot be read.
+pub fn on_disk(path: &Path) -> io::Result<()> {
+    match std::fs::metadata(path)?.is_file() {
+        true => Ok(()),
+        false => Err(io::Error::new(io::ErrorKind::InvalidInput, "it is not a file")),
     }
 }
 

@@ -62,7 +62,7 @@ pub use durations::Durations;
 pub use ensemble::{Ensemble, Member};
 pub use fault::{CaseError, CaseErrorKind};
 pub use file_kind::FileKind;
-pub use files::{FileAccess, NoFiles, Outline, open_file};
+pub use files::{FileAccess, NoFiles, Outline, on_disk, open_file};
 pub use formula::{Formula, FormulaError};
 pub use grid::{Axis, Grid, Places, Points};
 pub use kinds::*;

@@ -278,10 +278,22 @@ mod any_text {
 }
 
 #[test]
-fn an_earth_pressure_on_terrain_is_refused_not_ignored() {
-    let text = "[terrain]\ndem = \"a.asc\"\n[material]\ndensity = 200.0\nfriction.coulomb = { mu = 0.4 }\n\
-                earth_pressure = \"kaland\"\n[[release]]\ncap = { height = 1.0, centre = [0.0, 0.0], radius = 5.0 }\n\
-                [time]\nend = 1.0\n";
-    let error = Case::parse(text, "case.toml").and_then(|case| case.check(&Disk)).unwrap_err();
-    assert!(error.headline().contains("material.earth_pressure"), "{}", error.headline());
+fn an_earth_pressure_needs_the_one_angle_of_a_law() {
+    let text = |friction: &str, pressure: &str| {
+        format!(
+            "[terrain]\ndem = \"a.asc\"\n[material]\ndensity = 200.0\nfriction.{friction}\nearth_pressure{pressure}\n\
+             [[release]]\ncap = {{ height = 1.0, centre = [0.0, 0.0], radius = 5.0 }}\n[time]\nend = 1.0\n"
+        )
+    };
+    for friction in [
+        "bingham = { yield = 100.0, viscosity = 10.0 }",
+        "samosat = { size = \"auto\" }",
+        "coulomb = { mu = { by_elevation = { at = [1000], values = [0.3, 0.4] } } }",
+    ] {
+        for pressure in [" = \"kaland\"", ".active_passive = { internal = \"35 deg\" }"] {
+            let case = Case::parse(&text(friction, pressure), "case.toml");
+            let error = case.and_then(|case| case.check(&Disk)).unwrap_err();
+            assert!(error.headline().contains("needs the one friction angle"), "{}", error.headline());
+        }
+    }
 }

@@ -2,7 +2,6 @@
 
 use std::io::{self, Write};
 use std::path::Path;
-use std::process::ExitCode;
 
 use granflow::StartError;
 use granflow::case::{CaseError, CaseErrorKind, short_numbers};
@@ -63,8 +62,8 @@ impl Failure {
     }
 
     /// Prints the failure on standard error and gives the exit status.
-    pub fn report(self) -> ExitCode {
-        let status = ExitCode::from(self.status());
+    pub fn report(self) -> u8 {
+        let status = self.status();
         match self {
             Self::Usage { message, cure } => tell(&format!("error: {message}\n  help: {cure}\n")),
             Self::Case(error) => send(&snippet::shown(&error, Ink::of_standard_error())),
@@ -108,7 +107,7 @@ impl From<RunError> for Failure {
                 Self::usage(error.to_string(), "try a smaller --threads")
             }
             RunError::Begin(_) | RunError::Output(_) | RunError::Files(_) => Self::File(error.to_string()),
-            RunError::Computation { .. } => Self::Computation(error.to_string()),
+            RunError::Computation { .. } | RunError::Failed { .. } => Self::Computation(error.to_string()),
         }
     }
 }

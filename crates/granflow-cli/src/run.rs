@@ -1,7 +1,9 @@
 //! `granflow run`: a case from its start to its end.
 
+use std::ffi::OsString;
 use std::num::NonZeroUsize;
 use std::path::{Path, PathBuf};
+use std::sync::OnceLock;
 use std::sync::atomic::AtomicBool;
 
 use granflow::Checked;
@@ -100,9 +102,17 @@ fn attempt(case: Checked, options: &RunOptions, stop: &AtomicBool) -> Result<Fin
     finished
 }
 
-/// The command, in which what is no text is marked as such.
+/// The command, for the history of results.
+static COMMAND: OnceLock<String> = OnceLock::new();
+
+/// Notes the command, in which what is no text is marked as such.
+pub fn note_command(words: &[OsString]) {
+    let words: Vec<_> = words.iter().map(|word| word.to_string_lossy()).collect();
+    COMMAND.get_or_init(|| words.join(" "));
+}
+
 pub fn command() -> String {
-    std::env::args_os().map(|word| word.to_string_lossy().into_owned()).collect::<Vec<_>>().join(" ")
+    COMMAND.get().cloned().unwrap_or_default()
 }
 
 /// How an interrupted run goes on.

@@ -6,6 +6,7 @@ use granflow::output::frames::Frames;
 use granflow::output::ledger::Ledger;
 use granflow::output::summary::Summary;
 use granflow::results::Story;
+use granflow::Inputs;
 use granflow::session::{Options, origin};
 use std::path::Path;
 use std::sync::OnceLock;
@@ -31,7 +32,7 @@ fn left() -> &'static [Left; 2] {
 fn compute(text: &str) -> Left {
     let folder = tempfile::tempdir().expect("a folder for the seeds");
     let checked = Case::parse(text, "case.toml").and_then(|case| case.check()).expect("the case is in order");
-    let origin = origin(checked.plan()).expect("it names no files");
+    let origin = origin(checked.plan(), &Inputs::default()).expect("it names no files");
     let options = Options {
         directory: folder.path().to_owned(),
         threads: 1,

@@ -95,6 +95,30 @@ impl Reading {
         Ok(Reading { bytes, ..Reading::in_metres(path, raster, declared, crs, notes)? })
     }
 
+    /// The same of a raster in memory, which is called `name` in messages: it is held to what is asked of one from a file.
+    /// `heights` says whether its values are heights; else they are plain numbers, to which no unit of heights applies.
+    ///
+    /// # Errors
+    /// As [`Raster::read_in`].
+    pub fn of_memory(
+        name: &Path,
+        mut raster: Raster,
+        crs: Option<&Crs>,
+        heights: bool,
+    ) -> Result<Reading, RasterError> {
+        let mut notes = Vec::new();
+        raster.crs = agreed(name, raster.crs, crs, &mut notes)?;
+        let infinite_cells = raster.values.iter_mut().filter(|value| value.is_infinite());
+        let count = infinite_cells.map(|value| *value = f64::NAN).count();
+        if count > 0 {
+            notes.push(infinite(name, count, ""));
+        }
+        let bytes = size_of_val(raster.values.as_slice());
+        let heights = if heights { None } else { Some(Heights::Unit(1.0)) };
+        let declared = Declared { heights, ..Declared::default() };
+        Ok(Reading { bytes, ..Reading::in_metres(name, raster, declared, crs, notes)? })
+    }
+
     /// What is stored, what is declared of it, and the bytes that reading held.
     fn stored(path: &Path, crs: Option<&Crs>) -> Result<(Raster, Declared, Vec<Remark>, usize), RasterError> {
         let mut magic = [0; 4];
@@ -368,6 +392,19 @@ pub(crate) mod tests {
         assert!(flume.clone().checked(Path::new("flume.asc")).is_ok());
         let crs = Some(Crs { epsg: Some(4326), wkt: None });
         assert!(refused(Raster { crs, ..flume }).contains("gdalwarp"));
+    }
+
+    #[test]
+    fn a_raster_in_memory_is_held_to_the_same() {
+        let name = Path::new("<terrain.dem>");
+        let tilted = sampled(4, 3, |x, _| if x < 1.0 { f64::INFINITY } else { x });
+        let read = Reading::of_memory(name, tilted.clone(), None, true).unwrap();
+        assert!(read.raster.values[0].is_nan() && read.raster.values[1] == 1.5);
+        assert!(read.notes[0].text().contains("3 cells are infinite"), "{:?}", read.notes);
+        let [a, b] = [31287, 32632].map(|epsg| Crs { epsg: Some(epsg), wkt: None });
+        let other = Raster { crs: Some(a), ..tilted };
+        let message = Reading::of_memory(name, other, Some(&b), true).unwrap_err().to_string();
+        assert!(message.contains("<terrain.dem>") && message.contains("EPSG:31287"), "{message}");
     }
 
     #[test]

@@ -1,6 +1,9 @@
 //! The case file of a run: what [`granflow_case`] reads, joined with the files of the world and the models.
 
-use crate::disk::Disk;
+use crate::access::Access;
+#[cfg(feature = "files")]
+use crate::access::file_kinds;
+use crate::inputs::Inputs;
 use crate::models::{self, Shared};
 use crate::run::{Exceeded, Run, What};
 pub use crate::start_error::StartError;
@@ -14,7 +17,7 @@ pub struct Case(granflow_case::Case);
 
 /// A case that was checked; [`Checked::start`] gives the run.
 #[derive(Debug)]
-pub struct Checked(granflow_case::Checked);
+pub struct Checked(granflow_case::Checked, Inputs);
 
 impl Deref for Case {
     type Target = granflow_case::Case;
@@ -59,14 +62,21 @@ impl Case {
     /// # Errors
     /// [`CaseError`] for the first thing that is wrong; its kind is `File` where a file cannot be read.
     pub fn check(&self) -> Result<Checked, CaseError> {
-        self.0.check(&Disk).map(Checked)
+        self.check_with(&Inputs::default())
+    }
+    /// The same with files and rasters in memory that the case names.
+    ///
+    /// # Errors
+    /// As [`Case::check`].
+    pub fn check_with(&self, inputs: &Inputs) -> Result<Checked, CaseError> {
+        Ok(Checked(self.0.check(&Access(inputs))?, inputs.clone()))
     }
     /// The case with overrides laid over it, as a member of its ensemble has them, checked.
     ///
     /// # Errors
     /// As [`Case::read_with`] and [`Case::check`].
-    pub fn check_with(&self, overrides: &[String]) -> Result<Checked, CaseError> {
-        self.0.check_with(overrides, &Disk).map(Checked)
+    pub fn check_member(&self, overrides: &[String], inputs: &Inputs) -> Result<Checked, CaseError> {
+        Ok(Checked(self.0.check_with(overrides, &Access(inputs))?, inputs.clone()))
     }
 }
 
@@ -75,6 +85,10 @@ impl Checked {
     #[must_use]
     pub fn plan(&self) -> &RunPlan {
         &self.0.run
+    }
+    /// The files in memory that it may name.
+    pub(crate) fn inputs(&self) -> &Inputs {
+        &self.1
     }
     /// What only this kind of case has.
     #[must_use]
@@ -96,8 +110,8 @@ impl Checked {
         self.started(Some(shared))
     }
     fn started(self, shared: Option<&Shared>) -> Result<Box<dyn Run>, StartError> {
-        let granflow_case::Checked { run, kind } = self.0;
-        let mut started = models::start(&run, kind, shared)?;
+        let Checked(granflow_case::Checked { run, kind }, inputs) = self;
+        let mut started = models::start(&run, kind, &inputs, shared)?;
         started.track_durations(&exceeded(&run.output.durations));
         Ok(started)
     }
@@ -106,8 +120,8 @@ impl Checked {
     /// # Errors
     /// As [`Checked::start`].
     pub fn describe(self) -> Result<Vec<(&'static str, String)>, StartError> {
-        let granflow_case::Checked { run, kind } = self.0;
-        let mut lines = models::describe(&run, kind)?;
+        let Checked(granflow_case::Checked { run, kind }, inputs) = self;
+        let mut lines = models::describe(&run, kind, &inputs)?;
         lines.extend(run.ensemble.iter().map(|ensemble| ("ensemble", ensemble.to_string())));
         Ok(lines)
     }
@@ -126,5 +140,5 @@ fn exceeded(durations: &Durations) -> Vec<Exceeded> {
 #[cfg(feature = "files")]
 #[must_use]
 pub fn json_schema() -> serde_json::Value {
-    granflow_case::json_schema(Disk.kinds())
+    granflow_case::json_schema(file_kinds())
 }

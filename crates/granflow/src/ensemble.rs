@@ -42,6 +42,7 @@ use crate::StartError;
 use crate::case::{Case, CaseError};
 use crate::model::Plane;
 use crate::models::Shared;
+use crate::inputs::Inputs;
 use crate::output;
 use crate::output::checkpoint::Origin;
 use crate::output::figures::PictureError;
@@ -57,6 +58,7 @@ use std::sync::atomic::AtomicBool;
 pub struct Ensemble {
     case: Case,
     run: RunPlan,
+    inputs: Inputs,
     plan: Arc<granflow_case::Ensemble>,
     origin: Origin,
     shared: Shared,
@@ -107,21 +109,29 @@ impl Ensemble {
     /// # Errors
     /// [`EnsembleError`]: the case, one of its files, or no such table.
     pub fn of(case: &Case) -> Result<Ensemble, EnsembleError> {
-        let checked = case.check()?;
+        Self::with(case, &Inputs::default())
+    }
+
+    /// The same with files and rasters in memory that the case names.
+    ///
+    /// # Errors
+    /// As [`Ensemble::of`].
+    pub fn with(case: &Case, inputs: &Inputs) -> Result<Ensemble, EnsembleError> {
+        let checked = case.check_with(inputs)?;
         let run = checked.plan().clone();
         let Some(plan) = run.ensemble.clone() else {
             let message = "the case has no table [ensemble]";
             let cure = "add one with members and vary, as in docs/ensemble.md; `granflow run` computes the case alone";
             return Err(run.fault("ensemble", message, cure).into());
         };
-        let origin = origin(&run)?;
+        let origin = origin(&run, inputs)?;
         let shared = Shared::default();
         let started = checked.start_among(&shared)?;
         let plane = started.place();
         let pressure = plane.domain.raster().is_some();
         let names = ["peak_thickness", "peak_speed", "peak_pressure"];
         let names = names[..2 + usize::from(pressure)].iter().map(|name| (*name).to_owned()).collect();
-        Ok(Ensemble { case: case.clone(), run, plan, origin, shared, plane, names })
+        Ok(Ensemble { case: case.clone(), inputs: inputs.clone(), run, plan, origin, shared, plane, names })
     }
 
     /// What the case asks for.
@@ -173,7 +183,8 @@ impl Ensemble {
     pub fn compute(&self, number: u32, stop: &AtomicBool) -> Option<Outcome> {
         let member = self.sample(number);
         let work = || {
-            let checked = self.case.check_with(&member.overrides).map_err(|error| error.to_string())?;
+            let checked = self.case.check_member(&member.overrides, &self.inputs);
+            let checked = checked.map_err(|error| error.to_string())?;
             let start = |checked: crate::Checked| checked.start_among(&self.shared);
             member::compute(checked, start, &self.names, [&self.plane.x, &self.plane.y], stop)
         };

@@ -70,17 +70,18 @@
 //!
 //! `threads`, `files`, `geo` and `figures`, all on by default: several threads; results on disk; terrain; pictures.
 
+mod access;
 pub mod build;
 pub mod case;
 mod check_value;
 #[cfg(all(feature = "figures", feature = "geo"))]
 pub mod compare;
 pub mod describe;
-mod disk;
 #[cfg(all(feature = "figures", feature = "geo"))]
 pub mod ensemble;
 mod entry;
 mod field;
+mod inputs;
 mod memory;
 pub mod model;
 pub mod models;
@@ -98,12 +99,13 @@ mod start_error;
 mod stop_reason;
 pub mod watch;
 
+pub use access::file_kinds;
 pub use case::{Case, Checked};
-pub use disk::Disk;
 pub use granflow_engine::{grid, kernel, kernels, simulation};
 #[cfg(feature = "geo")]
 pub use granflow_geo::{raster, release, terrain};
 pub use granflow_model::{hadeler_kuttler, limiter, real, savage_hutter, scheme, time};
+pub use inputs::Inputs;
 pub use model::Words;
 pub use start_error::StartError;
 

@@ -5,6 +5,7 @@ pub mod savage_hutter;
 
 use crate::StartError;
 use crate::describe::Line;
+use crate::inputs::Inputs;
 use crate::model::Model;
 use crate::run::Run;
 #[cfg(all(feature = "geo", feature = "threads"))]
@@ -25,14 +26,19 @@ pub struct Shared {
 }
 
 /// The run of a checked case; what others use too is kept in `shared`, where that is given.
-pub(crate) fn start(run: &RunPlan, kind: Kind, shared: Option<&Shared>) -> Result<Box<dyn Run>, StartError> {
+pub(crate) fn start(
+    run: &RunPlan,
+    kind: Kind,
+    inputs: &Inputs,
+    shared: Option<&Shared>,
+) -> Result<Box<dyn Run>, StartError> {
     #[cfg(not(feature = "geo"))]
-    let _ = shared;
+    let _ = (inputs, shared);
     match kind {
         Kind::Chute(plan) => savage_hutter::run::chute::start(run, &plan),
         #[cfg(feature = "geo")]
         Kind::Terrain(plan) => {
-            savage_hutter::run::terrain::start(run, &plan, shared.map(|shared| &shared.mountains))
+            savage_hutter::run::terrain::start(run, &plan, inputs, shared.map(|shared| &shared.mountains))
         }
         #[cfg(not(feature = "geo"))]
         Kind::Terrain(_) => Err(StartError::Feature { feature: "geo" }),
@@ -41,11 +47,12 @@ pub(crate) fn start(run: &RunPlan, kind: Kind, shared: Option<&Shared>) -> Resul
 }
 
 /// What a checked case would compute.
-pub(crate) fn describe(run: &RunPlan, kind: Kind) -> Result<Vec<Line>, StartError> {
+pub(crate) fn describe(run: &RunPlan, kind: Kind, inputs: &Inputs) -> Result<Vec<Line>, StartError> {
+    let _ = inputs;
     match kind {
         Kind::Chute(plan) => savage_hutter::run::describe::chute(run, &plan),
         #[cfg(feature = "geo")]
-        Kind::Terrain(plan) => savage_hutter::run::describe::terrain(run, &plan),
+        Kind::Terrain(plan) => savage_hutter::run::describe::terrain(run, &plan, inputs),
         #[cfg(not(feature = "geo"))]
         Kind::Terrain(_) => Err(StartError::Feature { feature: "geo" }),
         Kind::Sandpile(plan) => Ok(hadeler_kuttler::run::describe::lines(run, &plan)),

@@ -1,5 +1,6 @@
 //! What a run leaves: the series, the maps, the ledger, and the files made of them.
 
+mod contents;
 mod dataset;
 mod error;
 mod files;
@@ -11,6 +12,7 @@ mod story;
 mod watched;
 
 pub use crate::model::{Maps, Plane};
+pub(crate) use contents::Contents;
 pub use dataset::{About, dataset};
 pub use error::FilesError;
 pub use files::check_kinds;
@@ -22,11 +24,10 @@ use crate::output::folder::Folder;
 use crate::output::frames::Frames;
 use crate::output::ledger::Entry;
 use crate::output::lines::Table;
-use crate::output::netcdf::{Values, history};
+use crate::output::netcdf::Values;
 use crate::output::summary::Summary;
 use granflow_case::FileKind;
 use std::path::{Path, PathBuf};
-use std::time::SystemTime;
 
 /// A run that has ended, with all it leaves.
 #[derive(Debug)]
@@ -69,30 +70,22 @@ impl Finished {
     /// [`output::Error`] naming the file.
     pub fn write_result(&self, command: &str) -> Result<(), output::Error> {
         let mut frames = self.frames.again()?;
-        let stored = frames.fields().iter().map(|field| &field.name);
-        let series = stored.map(|name| (name.as_str(), Values::Stored(name.clone()))).collect();
-        let about = About {
-            title: self.summary.title.clone(),
-            history: history(SystemTime::now(), command),
-            case: self.case.clone(),
-            case_text: self.case_text.clone(),
-            scheme: self.summary.scheme.clone(),
-            stop_reason: self.summary.stop_reason.to_string(),
-            threshold: self.summary.threshold,
+        let stored: Vec<String> = frames.fields().iter().map(|field| field.name.clone()).collect();
+        let series = stored.iter().map(|name| (name.as_str(), Values::Stored(name.clone()))).collect();
+        let table = |path: &Option<PathBuf>| path.as_deref().map(Table::read).transpose();
+        let tables = [table(&self.series[0])?, table(&self.series[1])?];
+        let contents = Contents {
+            plane: &self.plane,
+            precision: frames.precision(),
+            times: frames.times().to_vec(),
+            series,
+            maps: &self.maps,
+            tables,
+            summary: &self.summary,
+            case: [&self.case, &self.case_text],
         };
-        let times = frames.times().to_vec();
-        let result = dataset(&self.plane, frames.precision(), times, series, &self.maps, about);
         let path = self.result();
-        let mut result = result.map_err(|problem| output::Error::invalid(&path, problem))?;
-        for name in ["thickness", "speed", "pressure"].map(|what| format!("duration_{what}_threshold")) {
-            let threshold = self.summary.extra(&name);
-            result.attributes.extend(threshold.map(|threshold| (name, threshold.to_string())));
-        }
-        for (table, kind) in self.series.iter().zip([watched::GAUGE, watched::SECTION]) {
-            if let Some(table) = table {
-                watched::add(&mut result, &kind, Table::read(table)?, self.plane.domain.units());
-            }
-        }
+        let result = contents.dataset(command).map_err(|problem| output::Error::invalid(&path, problem))?;
         result.write(&path, Some(&mut frames))
     }
 

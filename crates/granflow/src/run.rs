@@ -20,12 +20,12 @@ mod trickle;
 
 pub use crate::entry::{Entry, sum};
 pub use crate::stop_reason::StopReason;
-pub use drive::{DriveError, drive, reached};
+pub use drive::{DriveError, drive, reached, watch_for};
 pub use durations::{Exceeded, What};
 pub use entry::mass_error;
 pub use field_view::FieldView;
-pub use frames::Frames;
 pub(crate) use frames::after;
+pub use frames::{FrameClock, Frames};
 pub use granflow_case::{Ends, Until};
 pub use granflow_engine::simulation::Face;
 pub use granflow_engine::simulation::{Failure, Totals};

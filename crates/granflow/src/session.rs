@@ -1,15 +1,17 @@
 //! From a case to its files: what the program `granflow run` does, as a function.
 
+use crate::inputs::Inputs;
 use crate::output;
 use crate::output::checkpoint::{Origin, case_hash};
 use crate::output::folder::Folder;
-use crate::output::inputs::inputs;
+use crate::output::inputs::{Input, inputs};
 use crate::results::{FilesError, Finished, check_kinds};
 use crate::run::{DriveError, Run, drive};
-use crate::sinks::{BeginError, Callback, Files, Sink, Stop};
+use crate::sinks::{BeginError, Callback, Files, Keep, Kept, Sink, Stop};
 use crate::watch::Watch;
 use crate::{Checked, StartError};
 use granflow_case::RunPlan;
+use rayon::ThreadPool;
 use std::path::PathBuf;
 use std::sync::atomic::AtomicBool;
 use std::time::Instant;
@@ -57,9 +59,29 @@ pub enum RunError {
         /// Where.
         saved: PathBuf,
     },
+    /// The same of a run in memory: nothing is saved.
+    #[error("{failure}")]
+    Failed {
+        /// What happened.
+        failure: Box<DriveError>,
+        /// Time that was reached.
+        time: f64,
+    },
     /// The threads could not be started.
     #[error("cannot start the threads: {0}")]
     Threads(String),
+}
+
+/// So many threads for a run; 0 takes all cores.
+///
+/// # Errors
+/// [`RunError::Threads`].
+pub fn threads(number: usize) -> Result<ThreadPool, RunError> {
+    if number > MAX_THREADS {
+        return Err(RunError::Threads(format!("{number} are more than {MAX_THREADS}")));
+    }
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(number).build();
+    pool.map_err(|error| RunError::Threads(error.to_string()))
 }
 
 impl Checked {
@@ -75,15 +97,33 @@ impl Checked {
         report: &mut (dyn FnMut(&dyn Run) + Send),
     ) -> Result<Finished, RunError> {
         let begun = Instant::now();
-        if options.threads > MAX_THREADS {
-            return Err(RunError::Threads(format!("{} are more than {MAX_THREADS}", options.threads)));
-        }
-        let pool = rayon::ThreadPoolBuilder::new()
-            .num_threads(options.threads)
-            .build()
-            .map_err(|error| RunError::Threads(error.to_string()))?;
         // The loop itself is one of the pool's threads: a step then needs no queue, and no allocation.
-        pool.install(|| self.into_files(options, begun, stop, report))
+        threads(options.threads)?.install(|| self.into_files(options, begun, stop, report))
+    }
+
+    /// Compute the case and keep in memory what its `result.nc` would hold; no file is written. Threads, `stop` and `report` as
+    /// for [`Checked::compute`].
+    ///
+    /// # Errors
+    /// [`RunError`].
+    pub fn compute_in_memory(
+        self,
+        number: usize,
+        stop: &AtomicBool,
+        report: &mut (dyn FnMut(&dyn Run) + Send),
+    ) -> Result<Kept, RunError> {
+        let begun = Instant::now();
+        threads(number)?.install(|| {
+            let plan = self.plan().clone();
+            let mut run = self.start()?;
+            let mut keep = Keep::begin(&plan, begun, &mut *run)?;
+            let mut report = Callback(report);
+            let sinks: &mut [&mut dyn Sink] = &mut [&mut Stop(stop), &mut report, &mut keep];
+            match drive(&mut *run, &plan.ends, sinks) {
+                Ok(reason) => Ok(keep.finish(run, reason)?),
+                Err(failure) => Err(RunError::Failed { failure: Box::new(failure), time: run.time() }),
+            }
+        })
     }
 
     fn into_files(
@@ -96,7 +136,7 @@ impl Checked {
         let plan = self.plan().clone();
         let folder = Folder::take(directory)?;
         // Looked at before anything is read: what changes while it is being read is noticed by the next resume.
-        let started = origin(&plan).map_err(RunError::from).and_then(|origin| {
+        let started = origin(&plan, self.inputs()).map_err(RunError::from).and_then(|origin| {
             let run = self.start()?;
             check_kinds(&plan.output.files, run.plane())?;
             Watch::of(&plan, &*run)?.notes.iter().for_each(|note| notice(note));
@@ -135,11 +175,17 @@ impl Checked {
     }
 }
 
-/// What the run of a case is made of: its text, and what is in the files it names.
+/// What the run of a case is made of: its text, and what is in the files it names, on the disk or in memory.
 ///
 /// # Errors
 /// [`output::Error`] naming a file that cannot be read.
-pub fn origin(plan: &RunPlan) -> Result<Origin, output::Error> {
-    let inputs = inputs(&plan.inputs, |path| plan.as_written(path))?;
+pub fn origin(plan: &RunPlan, memory: &Inputs) -> Result<Origin, output::Error> {
+    let held = |path: &PathBuf| memory.fingerprint(path).is_some();
+    let (held, files): (Vec<_>, Vec<_>) = plan.inputs.iter().cloned().partition(held);
+    let mut inputs = inputs(&files, |path| plan.as_written(path))?;
+    inputs.extend(held.iter().filter_map(|path| {
+        let (bytes, crc) = memory.fingerprint(path)?;
+        Some(Input { name: plan.as_written(path).display().to_string(), bytes, crc })
+    }));
     Ok(Origin { case: case_hash(&plan.text()), inputs })
 }

@@ -1,7 +1,6 @@
 //! Made-up sandpiles on tables of every shape: each file opens and holds what the run left. The pictures stay in
 //! `target/tmp/tables`.
 
-use granflow::case::FileAccess;
 use granflow::models::hadeler_kuttler::TableDomain;
 use granflow::output::Precision;
 use granflow::output::frames::Frames;
@@ -153,7 +152,7 @@ fn run(name: &str, plane: Plane, full: &[f64], files: &[&str]) -> Finished {
         series: [None, None],
         folder: None,
         directory,
-        files: granflow::Disk.kinds().iter().filter(|kind| files.contains(&kind.name)).copied().collect(),
+        files: granflow::file_kinds().iter().filter(|kind| files.contains(&kind.name)).copied().collect(),
         case: "title = \"made up\"\n".to_owned(),
         case_text: String::new(),
         maps: vec![("source", source)],

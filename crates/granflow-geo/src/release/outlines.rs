@@ -16,9 +16,18 @@ impl Outlines {
     /// # Errors
     /// [`ReleaseError`] for unreadable files, other shapes than polygons, rings that cross themselves, no polygon at all.
     pub fn read(path: &Path) -> Result<Self, ReleaseError> {
-        let polygons = Layer::read(path)?.outlines()?;
+        Self::of(Layer::read(path)?)
+    }
+
+    /// All polygons of a layer.
+    ///
+    /// # Errors
+    /// As [`Outlines::read`], but for reading.
+    pub fn of(layer: Layer) -> Result<Self, ReleaseError> {
+        let path = layer.name.clone();
+        let polygons = layer.outlines()?;
         match polygons.is_empty() {
-            true => Err(ReleaseError::Empty { path: path.into() }),
+            true => Err(ReleaseError::Empty { path }),
             false => Ok(Self { polygons }),
         }
     }

@@ -1,7 +1,7 @@
 //! One member of an ensemble: its case, its run, and what is kept of it.
 
 use crate::output::summary::Summary;
-use crate::results::numbers::{count, summary};
+use crate::results::numbers::{self, Start};
 use crate::run::{DriveError, Run, drive};
 use crate::sinks::{Sink, Stop};
 use crate::stop_reason::StopReason;
@@ -103,17 +103,16 @@ pub(super) fn compute(
     };
     run.stepper_mut().release_buffers();
     let end = run.maps();
-    let mut numbers = summary(&*run, &plan, reason, (begun, 0));
+    let mut summary = numbers::summary(&plan, &*run, reason, Start { at: begun, updates: 0 });
     let plane = run.place();
     let mut maps = run.into_peaks();
     maps.extend(end);
-    count(&maps, &mut numbers);
-    plane.derive(&mut maps, &mut numbers);
+    numbers::complete(&plane, &mut maps, &mut summary);
     let taken = names.iter().map(|name| {
         let place = maps.iter().position(|(own, _)| own == name);
         place.map(|place| maps.swap_remove(place).1).ok_or_else(|| format!("there is no map {name}"))
     });
     let maps = taken.collect::<Result<_, _>>()?;
-    let scalars = SCALARS.iter().map(|(_, _, of)| of(&numbers)).collect();
-    Ok(Some(Computed { reason, maps, scalars, stepping_seconds: numbers.stepping_seconds }))
+    let scalars = SCALARS.iter().map(|(_, _, of)| of(&summary)).collect();
+    Ok(Some(Computed { reason, maps, scalars, stepping_seconds: summary.stepping_seconds }))
 }

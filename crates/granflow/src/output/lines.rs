@@ -123,7 +123,14 @@ impl Table {
     /// # Errors
     /// [`Error::Io`]; [`Error::Damaged`] naming the first line that does not fit.
     pub fn read(path: &Path) -> Result<Table, Error> {
-        let text = fs::read_to_string(path).map_err(Error::io(path, "read"))?;
+        Self::parse(path, &fs::read_to_string(path).map_err(Error::io(path, "read"))?)
+    }
+
+    /// The table in a text; `path` is what messages call it.
+    ///
+    /// # Errors
+    /// [`Error::Damaged`] naming the first line that does not fit.
+    pub fn parse(path: &Path, text: &str) -> Result<Table, Error> {
         let mut lines = text.lines().zip(1..);
         let header = lines.next().map_or("", |(line, _)| line);
         let columns: Vec<String> = header.split(',').skip(2).map(str::to_owned).collect();

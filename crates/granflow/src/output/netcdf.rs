@@ -4,6 +4,7 @@
 //! the data are then appended block by block and the skeleton's object headers are told where they lie
 //! (`output/hdf5.rs`).
 
+mod described;
 mod write;
 
 use super::Precision;

@@ -1,12 +1,29 @@
-//! A run in numbers, as it stands.
+//! The figures of a run, as it ends or as it stands.
 
+use crate::model::Plane;
 use crate::output::summary::{StopReason, Summary};
 use crate::run::{Maps, Run, Until, mass_error, sum};
 use granflow_case::RunPlan;
 use std::time::Instant;
 
+/// From when on a process has worked on a run.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Start {
+    /// On the clock.
+    pub at: Instant,
+    /// The updates of a cell before it.
+    pub updates: u64,
+}
+
+/// Add what follows from the maps: further maps, figures, warnings.
+pub(crate) fn complete(plane: &Plane, maps: &mut Maps, summary: &mut Summary) {
+    count(maps, summary);
+    plane.derive(maps, summary);
+    summary.warnings = (plane.model().warnings)(plane.model(), summary);
+}
+
 /// Put the largest of the maps of peaks and times, in which films do not count, for the figures of the run.
-pub(crate) fn count(maps: &Maps, summary: &mut Summary) {
+fn count(maps: &Maps, summary: &mut Summary) {
     let largest = |map: &str| -> Option<f64> {
         let (_, values) = maps.iter().find(|(name, _)| *name == map)?;
         Some(values.iter().copied().fold(f64::NAN, f64::max))
@@ -19,19 +36,13 @@ pub(crate) fn count(maps: &Maps, summary: &mut Summary) {
     }
 }
 
-/// The figures of a run as they stand, which began at an instant after so many updates of cells; those that the maps know better
-/// follow in [`count`].
-pub(crate) fn summary(
-    run: &dyn Run,
-    plan: &RunPlan,
-    stop_reason: StopReason,
-    (begun, updates): (Instant, u64),
-) -> Summary {
+/// The figures of the run as they stand; what its maps say follows in [`complete`].
+pub(crate) fn summary(plan: &RunPlan, run: &dyn Run, stop_reason: StopReason, start: Start) -> Summary {
     let (stepper, record, plane) = (run.stepper(), run.record(), run.plane());
     let totals = run.totals();
     let out = stepper.outflow();
     let (gone, mass_in, initial) = (sum(out), stepper.poured(), record.initial);
-    let wall = begun.elapsed().as_secs_f64();
+    let wall = start.at.elapsed().as_secs_f64();
     let speed = |speed: f64| if run.has_speed() { speed } else { f64::NAN };
     let mut summary = Summary {
         title: plan.title.clone(),
@@ -55,7 +66,7 @@ pub(crate) fn summary(
         reach_angle: None,
         wall_seconds: wall,
         stepping_seconds: record.stepping.as_secs_f64(),
-        cell_updates_per_second: (stepper.updates() - updates) as f64 / wall,
+        cell_updates_per_second: (stepper.updates() - start.updates) as f64 / wall,
         threads: rayon::current_num_threads() as u64,
         version: env!("CARGO_PKG_VERSION").to_owned(),
         warnings: Vec::new(),

@@ -42,17 +42,22 @@ impl From<SinkError> for DriveError {
 /// [`DriveError`]: the sinks have seen every step before.
 pub fn drive(run: &mut dyn Run, ends: &Ends, sinks: &mut [&mut dyn Sink]) -> Result<StopReason, DriveError> {
     run.stepper_mut().show_end();
+    watch_for(run, ends);
+    run.bring();
+    law::check_state(run)?;
+    let reason = steps(run, ends, sinks)?;
+    law::check_end(run)?;
+    Ok(reason)
+}
+
+/// Have the run keep what [`reached`] asks of it.
+pub fn watch_for(run: &mut dyn Run, ends: &Ends) {
     if ends.kinetic_energy.is_some() {
         run.track_energy();
     }
     if let Some(Until::Rest { trickle: Some(thickness), .. }) = ends.until {
         run.track_trickle(thickness);
     }
-    run.bring();
-    law::check_state(run)?;
-    let reason = steps(run, ends, sinks)?;
-    law::check_end(run)?;
-    Ok(reason)
 }
 
 /// The steps to the first of the ends.

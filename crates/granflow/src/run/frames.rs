@@ -29,17 +29,44 @@ impl<'r> Frames<'r> {
             if self.ended {
                 return Ok(None);
             }
-            let next = after(self.run.time(), self.every);
-            self.run.stepper_mut().expect(next);
-            self.run.stepper_mut().show_end();
-            while self.run.time() < next && !self.run.at_rest() && self.run.step(f64::INFINITY)?.is_finite() {
+            let clock = FrameClock::begin(self.run, self.every);
+            while !clock.is_due(self.run) && !self.run.at_rest() && self.run.step(f64::INFINITY)?.is_finite()
+            {
             }
-            if next <= self.run.time() {
-                self.run.stepper_mut().show(next);
-            }
+            clock.show(self.run);
         }
         self.ended = self.run.at_rest();
         Ok(Some(&mut *self.run))
+    }
+}
+
+/// The way to the next frame, for whoever takes the steps: they end once the frame [is due](FrameClock::is_due) or nothing moves any
+/// more; then it is [shown](FrameClock::show).
+#[derive(Clone, Copy, Debug)]
+pub struct FrameClock {
+    next: f64,
+}
+
+impl FrameClock {
+    /// The next multiple of `every` after the time that `run` shows.
+    pub fn begin(run: &mut dyn Run, every: f64) -> FrameClock {
+        let next = after(run.time(), every);
+        run.stepper_mut().expect(next);
+        run.stepper_mut().show_end();
+        FrameClock { next }
+    }
+
+    /// The last step has reached the frame.
+    #[must_use]
+    pub fn is_due(&self, run: &dyn Run) -> bool {
+        run.time() >= self.next
+    }
+
+    /// Show the run as it was at the frame, if the last step has reached it.
+    pub fn show(&self, run: &mut dyn Run) {
+        if self.is_due(run) {
+            run.stepper_mut().show(self.next);
+        }
     }
 }
 

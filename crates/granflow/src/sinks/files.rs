@@ -3,10 +3,10 @@
 mod checkpoints;
 mod ended;
 mod ending;
-mod series;
 mod writer;
 
 use super::schedule::{Due, Schedule};
+use super::series::Series;
 use super::{Sink, SinkError};
 use crate::StartError;
 use crate::output;
@@ -16,12 +16,12 @@ use crate::output::frames::Frames;
 use crate::output::ledger::{Entry, Ledger};
 use crate::output::lines::Lines;
 use crate::output::summary::{StopReason, Summary};
+use crate::results::numbers::Start;
 use crate::results::{FilesError, Finished};
 use crate::run::{Run, check_state};
 use crate::watch::Watch;
 use ending::Ending;
 use granflow_case::RunPlan;
-use series::Series;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 use writer::Writer;
@@ -92,9 +92,7 @@ pub struct Files {
     series: Series,
     /// Times of the last frame and of the last ledger line.
     written: [f64; 2],
-    /// When this began on the clock, and the updates of a cell before it.
-    begun: Instant,
-    updates: u64,
+    start: Start,
     /// Frames so far.
     count: u64,
     /// The step after which everything was shown; while instants within a step are being shown it is the one before.
@@ -215,8 +213,7 @@ impl Files {
             schedule: Schedule::new(plan.output.frames, run.plane()),
             series,
             written,
-            begun: now,
-            updates: run.stepper().updates(),
+            start: Start { at: now, updates: run.stepper().updates() },
             count,
             shown: run.steps(),
             saved: now,
@@ -237,7 +234,7 @@ impl Files {
     /// Count wall time from then on: reading and setting up take their time too.
     #[must_use]
     pub fn since(mut self, begun: Instant) -> Self {
-        self.begun = begun;
+        self.start.at = begun;
         self
     }
 
@@ -264,9 +261,20 @@ impl Files {
         let shown = &*run;
         self.writer.frame(run.time(), |field, from, values| shown.fill(field, from, values))?;
         self.written[0] = run.time();
-        self.series.look(run, &mut self.writer)?;
-        self.series.hand_over(&mut self.writer)?;
+        self.series.look(run);
+        self.hand_over()?;
         self.line(run)
+    }
+
+    /// Give the writer the lines of gauges and sections that are held.
+    fn hand_over(&mut self) -> Result<(), output::Error> {
+        self.series.take().map_or(Ok(()), |lines| self.writer.series(lines))
+    }
+
+    /// Look at gauges and sections.
+    fn look(&mut self, run: &dyn Run) -> Result<(), output::Error> {
+        self.series.look(run);
+        if self.series.is_full() { self.hand_over() } else { Ok(()) }
     }
 
     /// A frame that was due, when the next one is, and the series joined if that is worth it.
@@ -284,7 +292,7 @@ impl Files {
         if let Some((last, cost)) = self.joined
             && last.elapsed().as_secs_f64() > (JOIN * cost).max(PAUSES[1])
         {
-            self.series.hand_over(&mut self.writer)?;
+            self.hand_over()?;
             let ending = Ending::of(self, run, StopReason::Interrupted);
             self.writer.join(ending)?;
             self.joined = None;
@@ -295,7 +303,7 @@ impl Files {
     fn step_taken(&mut self, run: &mut dyn Run, due: Due) -> Result<(), output::Error> {
         self.writer.check()?;
         if self.series.is_every_step() {
-            self.series.look(run, &mut self.writer)?;
+            self.look(run)?;
         }
         match due {
             Due::Frame => self.frame_due(run)?,
@@ -317,7 +325,7 @@ impl Files {
     /// Save what goes on from here, with every frame and line so far.
     fn checkpoint(&mut self, run: &dyn Run, ended: Option<StopReason>) -> Result<(), output::Error> {
         self.saved = Instant::now();
-        self.series.hand_over(&mut self.writer)?;
+        self.hand_over()?;
         let [frame, line] = self.schedule.next();
         let due = [frame, line, self.series.next()];
         self.writer.checkpoint(&checkpoints::of(run, &self.origin, due, ended))?;
@@ -339,7 +347,7 @@ impl Files {
                 self.frame(&mut *run)?;
             }
         }
-        self.series.hand_over(&mut self.writer)?;
+        self.hand_over()?;
         let command = self.command.clone();
         let ending = Ending::last(&self, run, reason);
         let (frames, ledger) = self.writer.end()?;
@@ -354,7 +362,7 @@ impl Files {
     /// # Errors
     /// [`output::Error`] naming the file.
     pub fn give_up(mut self, run: Box<dyn Run>, failure: &str) -> Result<Finished, output::Error> {
-        self.series.hand_over(&mut self.writer)?;
+        self.hand_over()?;
         let command = self.command.clone();
         let mut ending = Ending::last(&self, run, StopReason::Failed);
         ending.explain(failure);
@@ -373,7 +381,7 @@ impl Sink for Files {
     fn at_instant(&mut self, run: &mut dyn Run) -> Result<(), SinkError> {
         let instant = self.next_instant();
         if self.series.next() == instant {
-            self.series.look(run, &mut self.writer).map_err(SinkError::of)?;
+            self.look(run).map_err(SinkError::of)?;
             self.series.plan(run);
         }
         if self.schedule.next()[0] > instant {

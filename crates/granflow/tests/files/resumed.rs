@@ -251,7 +251,9 @@ fn a_run_ends_within_a_step_of_many_frames_and_goes_on_to_the_same_bits() {
     let plan = case.check().unwrap().plan().clone();
     let stop = AtomicBool::new(false);
     let lock = Folder::take(&parts).unwrap();
-    let mut files = Files::begin(lock, &plan, origin(&plan).unwrap(), "test", &mut *run).unwrap();
+    let mut files =
+        Files::begin(lock, &plan, origin(&plan, &granflow::Inputs::default()).unwrap(), "test", &mut *run)
+            .unwrap();
     let mut counted = Counted { stop: &stop, instants: 0, every: 1e-3 };
     let sinks: &mut [&mut dyn Sink] = &mut [&mut Stop(&stop), &mut files, &mut counted];
     let reason = drive(&mut *run, &plan.ends, sinks).unwrap();

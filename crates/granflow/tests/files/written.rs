@@ -207,7 +207,7 @@ fn series_in_memory_make_the_file_that_series_on_disk_make() {
 
 /// Kinds of files by their names.
 fn kinds(names: &[&str]) -> Vec<FileKind> {
-    granflow::Disk.kinds().iter().filter(|kind| names.contains(&kind.name)).copied().collect()
+    granflow::file_kinds().iter().filter(|kind| names.contains(&kind.name)).copied().collect()
 }
 
 /// A model from outside: water on a plane, its bed known at the nodes.

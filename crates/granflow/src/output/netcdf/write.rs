@@ -1,11 +1,9 @@
 //! How a dataset becomes a file: the skeleton first, then the numbers, part by part.
 
-use super::{Crs, Dataset, Values, Variable};
+use super::{Dataset, Values, Variable};
 use crate::output::frames::Frames;
 use crate::output::hdf5::{Block, allocate};
 use crate::output::{Error, Precision, whole_file};
-#[cfg(feature = "geo")]
-use crate::raster::well_known_text;
 use netcdf_writer::{DimensionId, NcAttrValue, NcFileBuilder, NcWriteFormat, NcWriteOptions, VariableId};
 use std::io::{self, Write};
 use std::path::Path;
@@ -72,9 +70,7 @@ impl Dataset<'_> {
         out: &mut dyn Write,
     ) -> io::Result<()> {
         let precision = variable.precision;
-        let terrain = self.terrain.filter(|terrain| {
-            terrain.len() == maps.length && variable.axes.last().is_some_and(|axis| axis == "x")
-        });
+        let terrain = self.mask(variable, maps.length);
         let mut nothing = Vec::new();
         precision.encode(&[f64::NAN], &mut nothing);
         let mut bytes = Vec::new();
@@ -155,15 +151,7 @@ impl Dataset<'_> {
 
     fn skeleton(&self) -> netcdf_writer::Result<Vec<u8>> {
         let mut file = NcFileBuilder::new();
-        let globals = [
-            ("Conventions", "CF-1.11"),
-            ("title", &self.title),
-            ("history", &self.history),
-            ("source", concat!("granflow ", env!("CARGO_PKG_VERSION"))),
-            ("case", &self.case),
-        ];
-        let more = self.attributes.iter().map(|(name, value)| (name.as_str(), value.as_str()));
-        for (name, value) in globals.into_iter().chain(more) {
+        for (name, value) in self.described() {
             file.add_attribute(name, text(value))?;
         }
         let mut dimensions: Vec<(&str, DimensionId)> = Vec::new();
@@ -174,15 +162,15 @@ impl Dataset<'_> {
         for (axis, &(_, dimension)) in self.axes.iter().zip(&dimensions) {
             let id = file.add_variable::<f64>(&axis.name, &[dimension])?;
             file.write_variable(id, &axis.values)?;
-            let standard = axis.standard_name.as_deref().map(|name| ("standard_name", name));
-            let names = [("units", axis.units.as_str()), ("long_name", &axis.long_name), ("axis", axis.axis)];
-            let names = names.into_iter().filter(|(_, value)| !value.is_empty());
-            describe(&mut file, id, names.chain(standard))?;
+            describe(&mut file, id, axis.described())?;
         }
         if let Some(crs) = &self.crs {
             let id = file.add_variable::<i32>("crs", &[])?;
             file.write_variable(id, &[0])?;
-            crs.describe(&mut file, id)?;
+            describe(&mut file, id, crs.described().iter().map(|(name, value)| (*name, value.as_str())))?;
+            if let Some(code) = crs.number() {
+                file.add_variable_attribute(id, "epsg", NcAttrValue::Ints(vec![code]))?;
+            }
         }
         for variable in &self.variables {
             let dimension =
@@ -200,10 +188,7 @@ impl Dataset<'_> {
                     id
                 }
             };
-            let placed = variable.axes.last().is_some_and(|axis| axis.starts_with('x'));
-            let mapping = self.crs.as_ref().filter(|_| placed).map(|_| ("grid_mapping", "crs"));
-            let names = [("units", variable.units.as_str()), ("long_name", &variable.long_name)];
-            describe(&mut file, id, names.into_iter().chain(mapping))?;
+            describe(&mut file, id, self.described_variable(variable))?;
         }
         Ok(file.to_vec(NcWriteOptions { format: NcWriteFormat::Nc4 })?.1)
     }
@@ -227,33 +212,6 @@ impl Maps {
     fn bytes(&self, variable: &Variable) -> u64 {
         (self.count * self.length * variable.precision.width()) as u64
     }
-}
-
-impl Crs {
-    /// The attributes that CF (`crs_wkt`), GDAL and rioxarray (`spatial_ref`) look for; GDAL wants well-known text
-    /// there, so a bare EPSG code is looked up.
-    fn describe(&self, file: &mut NcFileBuilder, id: VariableId) -> netcdf_writer::Result<()> {
-        let code = self.epsg.map(|code| format!("EPSG:{code}"));
-        let known = self.epsg.and_then(well_known_text);
-        let wkt = self.wkt.as_deref().or(known.as_deref());
-        let names = [
-            ("long_name", Some("coordinate reference system")),
-            ("crs_wkt", wkt),
-            ("spatial_ref", wkt.or(code.as_deref())),
-            ("epsg_code", code.as_deref()),
-        ];
-        describe(file, id, names.into_iter().filter_map(|(name, value)| Some((name, value?))))?;
-        match self.epsg.and_then(|code| i32::try_from(code).ok()) {
-            Some(code) => file.add_variable_attribute(id, "epsg", NcAttrValue::Ints(vec![code])),
-            None => Ok(()),
-        }
-    }
-}
-
-/// Nothing is looked up without the table of codes.
-#[cfg(not(feature = "geo"))]
-fn well_known_text(_epsg: u32) -> Option<String> {
-    None
 }
 
 fn describe<'a>(

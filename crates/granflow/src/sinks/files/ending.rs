@@ -6,7 +6,7 @@ use crate::output::folder::Folder;
 use crate::output::frames::Frames;
 use crate::output::summary::{StopReason, Summary};
 use crate::results::Finished;
-use crate::results::numbers::{count, summary};
+use crate::results::numbers;
 use crate::run::{Entry, Maps, Run};
 use granflow_case::FileKind;
 use std::path::PathBuf;
@@ -30,22 +30,21 @@ impl Ending {
         let end = run.maps();
         let mut maps = run.peaks();
         maps.extend(end);
-        Ending::with(files, run.place(), maps, numbers(files, run, reason))
+        Ending::with(files, run.place(), maps, summary(files, run, reason))
     }
 
     /// What there is at the end.
     pub fn last(files: &Files, mut run: Box<dyn Run>, reason: StopReason) -> Ending {
         run.stepper_mut().release_buffers();
         let end = run.maps();
-        let summary = numbers(files, &*run, reason);
+        let summary = summary(files, &*run, reason);
         let plane = run.place();
         let mut maps = run.into_peaks();
         maps.extend(end);
         Ending::with(files, plane, maps, summary)
     }
 
-    fn with(files: &Files, plane: Plane, maps: Maps, mut summary: Summary) -> Ending {
-        count(&maps, &mut summary);
+    fn with(files: &Files, plane: Plane, maps: Maps, summary: Summary) -> Ending {
         Ending {
             directory: files.folder.path().to_owned(),
             files: files.plan.output.files.clone(),
@@ -66,13 +65,11 @@ impl Ending {
     /// Put it together; `folder` keeps its lock for as long as files are made.
     pub fn finished(self, folder: Option<Folder>, frames: Frames, ledger: Vec<Entry>) -> Finished {
         let Ending { directory, files, case, case_text, plane, mut maps, series, mut summary } = self;
-        plane.derive(&mut maps, &mut summary);
-        summary.warnings = (plane.model().warnings)(plane.model(), &summary);
+        numbers::complete(&plane, &mut maps, &mut summary);
         Finished { directory, folder, files, case, case_text, plane, frames, ledger, maps, series, summary }
     }
 }
 
-/// The figures of the run as they stand; those that the maps know better follow in [`count`].
-fn numbers(files: &Files, run: &dyn Run, reason: StopReason) -> Summary {
-    summary(run, &files.plan, reason, (files.begun, files.updates))
+fn summary(files: &Files, run: &dyn Run, reason: StopReason) -> Summary {
+    numbers::summary(&files.plan, run, reason, files.start)
 }

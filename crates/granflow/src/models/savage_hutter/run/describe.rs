@@ -5,6 +5,8 @@ use super::chute::{self, Part};
 use super::terrain::{self, Loaded};
 use crate::StartError;
 use crate::describe::{Line, axis, case, effort, range};
+#[cfg(feature = "geo")]
+use crate::inputs::Inputs;
 use crate::memory::{Size, fits};
 use crate::model::{At, Kind, Quantity};
 use crate::run::Run;
@@ -39,12 +41,12 @@ pub(crate) fn chute(run: &RunPlan, plan: &OnChute) -> Result<Vec<Line>, StartErr
 
 /// The lines about an avalanche on a mountain.
 #[cfg(feature = "geo")]
-pub(crate) fn terrain(run: &RunPlan, plan: &OnTerrain) -> Result<Vec<Line>, StartError> {
+pub(crate) fn terrain(run: &RunPlan, plan: &OnTerrain, inputs: &Inputs) -> Result<Vec<Line>, StartError> {
     let order = match plan.scheme.name {
         TerrainScheme::EnergyStable | TerrainScheme::Balanced => "first order",
         TerrainScheme::EnergyStable2 | TerrainScheme::Balanced2 => "second order",
     };
-    let mut loaded = terrain::load(run, plan, None)?;
+    let mut loaded = terrain::load(run, plan, inputs, None)?;
     let mut lines = case(run, material(&loaded.material), &format!("{order}, film {:e}, ", plan.scheme.film));
     lines.push(threshold(run, " m"));
     lines.extend(mountain(&loaded, plan.material.gravity));

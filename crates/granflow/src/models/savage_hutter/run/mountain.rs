@@ -1,10 +1,11 @@
 //! The mountain of a case, as it was read: for one run, or for several.
 
 use crate::StartError;
+use crate::inputs::Inputs;
 use granflow_case::RunPlan;
 use granflow_case::terrain::Plan;
 use granflow_geo::Remark;
-use granflow_geo::raster::{Crs, Raster, Reading};
+use granflow_geo::raster::{Crs, Raster};
 use granflow_geo::terrain::{Curvature, Survey, Terrain};
 use std::path::PathBuf;
 use std::sync::Mutex;
@@ -34,7 +35,7 @@ pub(crate) struct Mountains(Mutex<Vec<(Key, Mountain)>>);
 
 impl Mountains {
     /// The mountain of a case; the first who asks for one reads it, and others wait.
-    pub fn of(&self, run: &RunPlan, plan: &Plan) -> Result<Mountain, StartError> {
+    pub fn of(&self, run: &RunPlan, plan: &Plan, inputs: &Inputs) -> Result<Mountain, StartError> {
         let bits = |value: f64| value.to_bits();
         let region = plan.region.map(|region| region.map(bits));
         let (cell, curvature) = (plan.cell.map(bits), plan.curvature.map(bits));
@@ -43,7 +44,7 @@ impl Mountains {
         if let Some((_, mountain)) = known.iter().find(|(own, _)| *own == key) {
             return Ok(mountain.clone());
         }
-        let mountain = Mountain::read(run, plan)?;
+        let mountain = Mountain::read(run, plan, inputs)?;
         let mountain = Mountain { terrain: mountain.terrain.with_fits(), ..mountain };
         known.push((key, mountain.clone()));
         Ok(mountain)
@@ -52,9 +53,9 @@ impl Mountains {
 
 impl Mountain {
     /// Reads the elevation of a case.
-    pub fn read(run: &RunPlan, plan: &Plan) -> Result<Mountain, StartError> {
+    pub fn read(run: &RunPlan, plan: &Plan, inputs: &Inputs) -> Result<Mountain, StartError> {
         let mut remarks = Vec::new();
-        let (bed, crs, reading) = bed(run, plan, &mut remarks)?;
+        let (bed, crs, reading) = bed(run, plan, inputs, &mut remarks)?;
         let survey = Survey::of(&bed);
         remarks.extend(survey.warnings(&plan.dem.display().to_string()));
         Ok(Mountain { terrain: curved(run, plan, bed)?, crs, survey, remarks, reading })
@@ -65,6 +66,7 @@ impl Mountain {
 fn bed(
     run: &RunPlan,
     plan: &Plan,
+    inputs: &Inputs,
     remarks: &mut Vec<Remark>,
 ) -> Result<(Raster, Option<Crs>, usize), StartError> {
     let crs = match &plan.crs {
@@ -73,7 +75,7 @@ fn bed(
         })?),
         None => None,
     };
-    let reading = Reading::of(&plan.dem, crs.as_ref())?;
+    let reading = inputs.heights(&plan.dem, crs.as_ref())?;
     remarks.extend(reading.notes);
     let held = reading.bytes;
     let bed = part(run, plan, reading.raster)?;

@@ -1,11 +1,11 @@
 //! Parameters of friction that differ from place to place, read for the cells of a mountain.
 
 use crate::StartError;
+use crate::inputs::Inputs;
 use granflow_case::RunPlan;
 use granflow_case::avalanche::{FOREST, InSpace, Material, Place};
 use granflow_geo::Remark;
 use granflow_geo::raster::{Crs, Raster, Reading};
-use granflow_geo::release::Layer;
 use granflow_model::savage_hutter::friction::Parameters;
 
 /// The numbers of the law in the cells of a mountain.
@@ -28,13 +28,14 @@ impl InCells {
     pub fn read(
         run: &RunPlan,
         material: &Material,
+        inputs: &Inputs,
         (bed, crs): (&Raster, Option<&Crs>),
         remarks: &mut Vec<Remark>,
     ) -> Result<InCells, StartError> {
         let mut cells = Self::everywhere(material);
         for parameter in &material.in_space {
             let first = |cell| cells.number(0, cell);
-            let (values, [least, largest]) = read(run, parameter, (bed, crs), first, remarks)?;
+            let (values, [least, largest]) = read(run, parameter, inputs, (bed, crs), first, remarks)?;
             if parameter.index == FOREST || !matches!(parameter.place, Place::Everywhere(_)) {
                 cells.ranges.push((parameter.key.clone(), [least, largest]));
             }
@@ -75,11 +76,12 @@ impl InCells {
 pub(super) fn read(
     run: &RunPlan,
     parameter: &InSpace,
+    inputs: &Inputs,
     (bed, crs): (&Raster, Option<&Crs>),
     first: impl Fn(usize) -> f64,
     remarks: &mut Vec<Remark>,
 ) -> Result<(Vec<f64>, [f64; 2]), StartError> {
-    let mut values = values(run, parameter, (bed, crs), remarks)?;
+    let mut values = values(run, parameter, inputs, (bed, crs), remarks)?;
     let (mut least, mut largest) = (f64::INFINITY, f64::NEG_INFINITY);
     for (cell, (value, level)) in values.iter_mut().zip(&bed.values).enumerate() {
         if level.is_nan() {
@@ -99,12 +101,13 @@ pub(super) fn read(
 fn values(
     run: &RunPlan,
     InSpace { key, place, .. }: &InSpace,
+    inputs: &Inputs,
     (bed, crs): (&Raster, Option<&Crs>),
     remarks: &mut Vec<Remark>,
 ) -> Result<Vec<f64>, StartError> {
     let (mut values, elsewhere) = match place {
         Place::Raster(path, elsewhere) => {
-            let Reading { raster, notes, .. } = Reading::of_numbers(path, bed.crs.as_ref().or(crs))?;
+            let Reading { raster, notes, .. } = inputs.numbers(path, bed.crs.as_ref().or(crs))?;
             remarks.extend(notes);
             raster.same_system(path, bed)?;
             let at = |k: usize| {
@@ -124,7 +127,7 @@ fn values(
             (values, *elsewhere)
         }
         Place::Polygons(path, attribute, elsewhere) => {
-            let layer = Layer::read(path)?;
+            let layer = inputs.layer(path)?;
             remarks.extend(layer.notes(bed));
             (layer.zones(attribute, bed)?, *elsewhere)
         }

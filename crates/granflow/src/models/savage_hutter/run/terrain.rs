@@ -10,6 +10,7 @@ use super::mountain::{Mountain, Mountains, curvature_of};
 use super::parameters::{self, InCells};
 use super::supply::{Inflow, Inlet, Late, Supply};
 use crate::StartError;
+use crate::inputs::Inputs;
 use crate::memory::fits;
 use crate::model::Plane;
 use crate::run::{Run, Simulated, step_size};
@@ -22,7 +23,7 @@ use granflow_engine::grid::Grid;
 use granflow_engine::kernels::Kernel;
 use granflow_engine::simulation::Simulation;
 use granflow_geo::Remark;
-use granflow_geo::raster::{Crs, Reading};
+use granflow_geo::raster::Crs;
 use granflow_geo::release::{self, Sparse};
 use granflow_geo::terrain::{Survey, Terrain};
 use granflow_model::savage_hutter::balanced::Balanced;
@@ -35,9 +36,10 @@ use std::sync::Arc;
 pub(crate) fn start(
     run: &RunPlan,
     plan: &Plan,
+    inputs: &Inputs,
     mountains: Option<&Mountains>,
 ) -> Result<Box<dyn Run>, StartError> {
-    simulate(run, plan, load(run, plan, mountains)?)
+    simulate(run, plan, load(run, plan, inputs, mountains)?)
 }
 
 /// A mountain and what is released on it, as they were read.
@@ -224,10 +226,15 @@ pub(crate) fn ground_at(
 }
 
 /// Reads the elevation and the releases.
-pub(super) fn load(run: &RunPlan, plan: &Plan, mountains: Option<&Mountains>) -> Result<Loaded, StartError> {
+pub(super) fn load(
+    run: &RunPlan,
+    plan: &Plan,
+    inputs: &Inputs,
+    mountains: Option<&Mountains>,
+) -> Result<Loaded, StartError> {
     let mountain = match mountains {
-        Some(mountains) => mountains.of(run, plan)?,
-        None => Mountain::read(run, plan)?,
+        Some(mountains) => mountains.of(run, plan, inputs)?,
+        None => Mountain::read(run, plan, inputs)?,
     };
     let Mountain { terrain, crs, survey, remarks, reading } = mountain;
     let (release, parts, supply) = (Sparse::default(), Vec::new(), Supply::default());
@@ -245,11 +252,11 @@ pub(super) fn load(run: &RunPlan, plan: &Plan, mountains: Option<&Mountains>) ->
         reading,
     };
     for one in &plan.releases {
-        add(&mut loaded, one, crs.as_ref())?;
+        add(&mut loaded, one, inputs, crs.as_ref())?;
     }
     for (number, one) in plan.inflows.iter().enumerate() {
         let key = format!("inflow[{number}]");
-        let inflow = inflow(run, one, &key, &mut loaded)?;
+        let inflow = inflow(run, one, &key, inputs, &mut loaded)?;
         loaded.supply.inflows.push(inflow);
     }
     let volume = loaded.parts.iter().map(|(_, _, volume)| volume).sum();
@@ -260,10 +267,10 @@ pub(super) fn load(run: &RunPlan, plan: &Plan, mountains: Option<&Mountains>) ->
         loaded.remarks.push(Remark::Note(text));
     }
     let bed = loaded.terrain.bed.clone();
-    let parameters = InCells::read(run, &material, (&bed, crs.as_ref()), &mut loaded.remarks)?;
+    let parameters = InCells::read(run, &material, inputs, (&bed, crs.as_ref()), &mut loaded.remarks)?;
     (loaded.material, loaded.parameters) = (material, Arc::new(parameters));
     if let Some(entrainment) = &plan.entrainment {
-        loaded.layer = Some(layer(run, entrainment, crs.as_ref(), &mut loaded)?);
+        loaded.layer = Some(layer(run, entrainment, inputs, crs.as_ref(), &mut loaded)?);
     }
     if mountains.is_none() {
         trim();
@@ -275,13 +282,15 @@ pub(super) fn load(run: &RunPlan, plan: &Plan, mountains: Option<&Mountains>) ->
 fn layer(
     run: &RunPlan,
     entrainment: &Entrainment,
+    inputs: &Inputs,
     crs: Option<&Crs>,
     loaded: &mut Loaded,
 ) -> Result<(Vec<f64>, f64), StartError> {
     let terrain = &loaded.terrain;
     let bed = &terrain.bed;
     let first = |_| f64::NEG_INFINITY;
-    let (mut depth, _) = parameters::read(run, &entrainment.layer, (bed, crs), first, &mut loaded.remarks)?;
+    let (mut depth, _) =
+        parameters::read(run, &entrainment.layer, inputs, (bed, crs), first, &mut loaded.remarks)?;
     depth.iter_mut().filter(|depth| depth.is_nan()).for_each(|depth| *depth = 0.0);
     let volumes = depth.iter().enumerate().filter(|(_, depth)| **depth > 0.0);
     let volumes = volumes.map(|(cell, depth)| depth / terrain.fit(bed.place(cell)).cosine());
@@ -299,7 +308,7 @@ fn trim() {
 }
 
 /// Adds the volume per plan area of one release.
-fn add(loaded: &mut Loaded, one: &Release, crs: Option<&Crs>) -> Result<(), StartError> {
+fn add(loaded: &mut Loaded, one: &Release, inputs: &Inputs, crs: Option<&Crs>) -> Result<(), StartError> {
     let bed = &loaded.terrain.bed;
     let (name, system, cells) = match &one.extent {
         Extent::Polygons { path, thickness } => {
@@ -313,13 +322,13 @@ fn add(loaded: &mut Loaded, one: &Release, crs: Option<&Crs>) -> Result<(), Star
                 }
                 Thickness::Features(each) => release::Thickness::Each(each.features.clone()),
             };
-            let layer = release::Layer::read(path)?;
+            let layer = inputs.layer(path)?;
             loaded.remarks.extend(layer.notes(bed));
             let system = Some(described(layer.crs()));
             (path.display().to_string(), system, layer.thickness(&thickness, bed)?)
         }
         Extent::Raster(path) => {
-            let reading = Reading::on_terrain(path, bed.crs.as_ref().or(crs))?;
+            let reading = inputs.thickness(path, bed.crs.as_ref().or(crs))?;
             loaded.remarks.extend(reading.notes);
             let system = Some(described(reading.raster.crs.as_ref()));
             (path.display().to_string(), system, release::carried(path, &reading.raster, bed)?)
@@ -359,13 +368,14 @@ fn inflow(
     run: &RunPlan,
     one: &granflow_case::terrain::Inflow,
     key: &str,
+    inputs: &Inputs,
     loaded: &mut Loaded,
 ) -> Result<Inflow, StartError> {
     let bed = &loaded.terrain.bed;
     let cells = match &one.over {
         Over::Line(points) => release::along(points, bed)?,
         Over::Polygons(path) => {
-            let layer = release::Layer::read(path)?;
+            let layer = inputs.layer(path)?;
             loaded.remarks.extend(layer.notes(bed));
             layer.cells(bed)?
         }

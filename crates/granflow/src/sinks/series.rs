@@ -1,8 +1,7 @@
-//! Gauges and sections as a run goes: lines of `gauges.csv` and `sections.csv`.
+//! Gauges and sections as a run goes: lines of `gauges.csv` and `sections.csv`, on the disk or in memory.
 
-use super::Writer;
 use crate::output::Error;
-use crate::output::lines::Lines;
+use crate::output::lines::{Lines, Table};
 use crate::output::mark::Mark;
 use crate::run::{Run, after};
 use crate::watch::Watch;
@@ -14,7 +13,7 @@ const FILES: [(&str, &str); 2] = [
     ("gauges.csv", "name,time,thickness,velocity_x,velocity_y,speed,pressure"),
     ("sections.csv", "name,time,discharge,volume,thickness,pressure"),
 ];
-/// Lines are handed to the writer once they have so many bytes, and before a frame, a checkpoint and the end.
+/// Whoever writes lines takes them once they have so many bytes, and before a frame, a checkpoint and the end.
 const HELD: usize = 1 << 16;
 
 /// What is looked at, and when next.
@@ -96,22 +95,34 @@ impl Series {
     }
 
     /// Lines of the state that is shown, unless it has some.
-    pub fn look(&mut self, run: &dyn Run, writer: &mut Writer) -> Result<(), Error> {
+    pub fn look(&mut self, run: &dyn Run) {
         if self.watch.is_empty() || self.written == run.time() {
-            return Ok(());
+            return;
         }
         self.written = run.time();
         self.gauges(run);
         self.sections(run);
-        if self.held.iter().any(|held| held.len() > HELD) { self.hand_over(writer) } else { Ok(()) }
     }
 
-    /// Give the writer what is held.
-    pub fn hand_over(&mut self, writer: &mut Writer) -> Result<(), Error> {
-        if self.held.iter().all(String::is_empty) {
-            return Ok(());
-        }
-        writer.series(std::mem::take(&mut self.held))
+    /// So much is held that it should be written.
+    pub fn is_full(&self) -> bool {
+        self.held.iter().any(|held| held.len() > HELD)
+    }
+
+    /// The lines that are held, if there are some.
+    pub fn take(&mut self) -> Option<[String; 2]> {
+        let any = self.held.iter().any(|held| !held.is_empty());
+        any.then(|| std::mem::take(&mut self.held))
+    }
+
+    /// All lines that are held, as the tables of gauges and of sections, where there are some.
+    pub fn into_tables(self) -> Result<[Option<Table>; 2], Error> {
+        let used = self.is_used();
+        let table = |k: usize| {
+            let text = format!("{}\n{}", FILES[k].1, self.held[k]);
+            used[k].then(|| Table::parse(Path::new(FILES[k].0), &text)).transpose()
+        };
+        Ok([table(0)?, table(1)?])
     }
 
     /// Thickness, velocities and speed in a cell; NaN for what the run does not have.

@@ -1,0 +1,112 @@
+//! A case: its text, what is laid over it, and what it names in memory.
+
+use crate::error::{of_case, of_start};
+use granflow::raster::{Crs, Raster};
+use granflow::{Checked, Inputs};
+use numpy::{PyReadonlyArray2, PyUntypedArrayMethods};
+use pyo3::exceptions::PyValueError;
+use pyo3::prelude::*;
+use std::path::PathBuf;
+
+/// A case as it is written.
+#[pyclass(module = "granflow._native", frozen)]
+#[derive(Clone)]
+pub struct Case {
+    place: Place,
+    overrides: Vec<String>,
+    inputs: Inputs,
+}
+
+/// Where its text is.
+#[derive(Clone)]
+enum Place {
+    File(PathBuf),
+    Text { text: String, name: String },
+}
+
+impl Case {
+    fn read(&self, py: Python<'_>) -> PyResult<granflow::Case> {
+        let case = match &self.place {
+            Place::File(path) => granflow::Case::read_with(path, &self.overrides),
+            Place::Text { text, name } => granflow::Case::parse_with(text, name, &self.overrides),
+        };
+        case.map_err(|error| of_case(py, &error))
+    }
+
+    /// The case, checked.
+    pub fn checked(&self, py: Python<'_>) -> PyResult<Checked> {
+        self.read(py)?.check_with(&self.inputs).map_err(|error| of_case(py, &error))
+    }
+}
+
+#[pymethods]
+impl Case {
+    /// From a file.
+    #[staticmethod]
+    fn from_file(path: PathBuf) -> Case {
+        Case { place: Place::File(path), overrides: Vec::new(), inputs: Inputs::default() }
+    }
+
+    /// From a text that messages call `name`.
+    #[staticmethod]
+    fn from_text(text: String, name: String) -> Case {
+        Case { place: Place::Text { text, name }, overrides: Vec::new(), inputs: Inputs::default() }
+    }
+
+    /// The same with `key.path=value` laid over it, the value as TOML.
+    fn with_override(&self, assignment: String) -> Case {
+        let mut case = self.clone();
+        case.overrides.push(assignment);
+        case
+    }
+
+    /// The same with a file in memory.
+    fn with_file(&self, name: &str, bytes: Vec<u8>) -> Case {
+        Case { inputs: self.inputs.clone().with_file(name, bytes), ..self.clone() }
+    }
+
+    /// The same with a raster in memory, its first row in the south.
+    #[pyo3(signature = (name, values, west, south, cell, crs))]
+    fn with_raster(
+        &self,
+        name: &str,
+        values: PyReadonlyArray2<'_, f64>,
+        west: f64,
+        south: f64,
+        cell: f64,
+        crs: Option<&str>,
+    ) -> PyResult<Case> {
+        let crs = match crs {
+            Some(text) => {
+                let wrong = |error: granflow::raster::CrsError| PyValueError::new_err(error.to_string());
+                Some(Crs::parse(text).map_err(wrong)?)
+            }
+            None => None,
+        };
+        let &[rows, columns] = values.shape() else { unreachable!("two dimensions") };
+        let values = values.as_array().iter().copied().collect();
+        let raster = Raster { columns, rows, west, south, cell, values, crs };
+        Ok(Case { inputs: self.inputs.clone().with_raster(name, raster), ..self.clone() })
+    }
+
+    /// Says what is wrong with it, if anything is.
+    fn check(&self, py: Python<'_>) -> PyResult<()> {
+        self.checked(py).map(drop)
+    }
+
+    /// What would be computed, as lines of a name and a value.
+    fn describe(&self, py: Python<'_>) -> PyResult<Vec<(&'static str, String)>> {
+        let checked = self.checked(py)?;
+        py.detach(|| checked.describe()).map_err(|error| of_start(py, &error))
+    }
+
+    /// The case as one TOML document.
+    fn resolved(&self, py: Python<'_>) -> PyResult<String> {
+        Ok(self.read(py)?.resolved())
+    }
+
+    /// The case with its defaults, as TOML.
+    fn to_toml(&self, py: Python<'_>) -> PyResult<String> {
+        Ok(self.read(py)?.to_toml())
+    }
+}

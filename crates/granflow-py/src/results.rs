@@ -1,0 +1,135 @@
+//! What a run left, as arrays and plain values of Python. A series of the run becomes an array without a copy.
+
+use granflow::output::Precision;
+use granflow::output::netcdf::{Values, Variable};
+use granflow::sinks::{Kept, Numbers};
+use numpy::{Element, PyArray1, PyArrayMethods, PyUntypedArrayMethods};
+use pyo3::exceptions::{PyRuntimeError, PyValueError};
+use pyo3::prelude::*;
+use pyo3::types::{PyDict, PyList};
+
+/// A variable but for its numbers.
+struct Head {
+    name: String,
+    axes: Vec<String>,
+    attributes: Vec<(&'static str, String)>,
+    shape: Vec<usize>,
+    precision: Precision,
+    /// The name of its series, or the numbers that do not change.
+    series: Result<String, Vec<f64>>,
+    /// It has no value where there is no terrain.
+    masked: bool,
+}
+
+/// `coords` and `variables` as lists of (name, dimensions, array, attributes), `attrs`, the attributes of `crs` where there is one, and
+/// `summary` as JSON.
+pub fn results(py: Python<'_>, mut kept: Kept) -> PyResult<Bound<'_, PyDict>> {
+    let (results, coords, attributes) = (PyDict::new(py), PyList::empty(py), PyDict::new(py));
+    let (mut heads, mut holes) = (Vec::new(), Vec::new());
+    {
+        let dataset =
+            kept.dataset("granflow.run").map_err(|error| PyValueError::new_err(error.to_string()))?;
+        for axis in &dataset.axes {
+            let values = PyArray1::from_slice(py, &axis.values);
+            coords.append((&axis.name, [&axis.name], values, described(py, &axis.described())?))?;
+        }
+        for (name, value) in dataset.described() {
+            attributes.set_item(name, value)?;
+        }
+        if let Some(terrain) = dataset.terrain {
+            holes = (0..terrain.len()).filter(|cell| terrain[*cell].is_nan()).collect();
+        }
+        if let Some(crs) = &dataset.crs {
+            let own = described(py, &crs.described())?;
+            crs.number().map_or(Ok(()), |code| own.set_item("epsg", code))?;
+            results.set_item("crs", own)?;
+        }
+        for variable in &dataset.variables {
+            let size = |name: &String| dataset.axes.iter().find(|axis| axis.name == *name);
+            let shape: Vec<usize> =
+                variable.axes.iter().filter_map(size).map(|axis| axis.values.len()).collect();
+            let length = shape.iter().skip(usize::from(variable.axes[0] == "time")).product();
+            let masked = dataset.mask(variable, length).is_some();
+            let attributes = dataset.described_variable(variable);
+            heads.push(head(variable, attributes, shape, masked));
+        }
+    }
+    let variables = PyList::empty(py);
+    for head in heads {
+        let numbers = match &head.series {
+            Ok(series) => taken(&mut kept, series)?,
+            Err(values) => rounded(values, head.precision),
+        };
+        let holes: &[usize] = if head.masked { &holes } else { &[] };
+        let array = match numbers {
+            Numbers::F32(values) => shaped(py, values, holes, f32::NAN, &head.shape)?,
+            Numbers::F64(values) => shaped(py, values, holes, f64::NAN, &head.shape)?,
+        };
+        variables.append((&head.name, &head.axes, array, described(py, &head.attributes)?))?;
+    }
+    results.set_item("coords", coords)?;
+    results.set_item("variables", variables)?;
+    results.set_item("attrs", attributes)?;
+    let summary = serde_json::to_string_pretty(&kept.summary);
+    results.set_item("summary", summary.map_err(|error| PyRuntimeError::new_err(error.to_string()))?)?;
+    Ok(results)
+}
+
+fn head(variable: &Variable, attributes: Vec<(&'static str, &str)>, shape: Vec<usize>, masked: bool) -> Head {
+    let series = match &variable.values {
+        Values::Stored(name) => Ok(name.clone()),
+        Values::Static(values) => Err(values.to_vec()),
+        Values::Series(instants) => Err(instants.concat()),
+    };
+    Head {
+        name: variable.name.clone(),
+        axes: variable.axes.clone(),
+        attributes: attributes.into_iter().map(|(name, value)| (name, value.to_owned())).collect(),
+        shape,
+        precision: variable.precision,
+        series,
+        masked,
+    }
+}
+
+fn described<'py, V: AsRef<str>>(
+    py: Python<'py>,
+    attributes: &[(&'static str, V)],
+) -> PyResult<Bound<'py, PyDict>> {
+    let all = PyDict::new(py);
+    attributes.iter().try_for_each(|(name, value)| all.set_item(name, value.as_ref()))?;
+    Ok(all)
+}
+
+/// The numbers of a series, which the run then has no more.
+fn taken(kept: &mut Kept, series: &str) -> PyResult<Numbers> {
+    let found = kept.series.iter().position(|(name, _)| name == series);
+    let missing = || PyRuntimeError::new_err(format!("the run kept no series {series}"));
+    found.map(|number| kept.series.swap_remove(number).1).ok_or_else(missing)
+}
+
+fn rounded(values: &[f64], precision: Precision) -> Numbers {
+    match precision {
+        #[expect(clippy::cast_possible_truncation, reason = "rounding to f32 is what was asked for")]
+        Precision::F32 => Numbers::F32(values.iter().map(|value| *value as f32).collect()),
+        Precision::F64 => Numbers::F64(values.to_vec()),
+    }
+}
+
+/// The numbers as an array of a shape, with `nothing` in the cells `holes` of every instant.
+fn shaped<'py, T: Element + Copy>(
+    py: Python<'py>,
+    mut values: Vec<T>,
+    holes: &[usize],
+    nothing: T,
+    shape: &[usize],
+) -> PyResult<Bound<'py, PyAny>> {
+    let instants = if shape.len() > 2 { shape[0] } else { 1 };
+    let length = values.len() / instants.max(1);
+    for instant in 0..instants {
+        holes.iter().for_each(|cell| values[instant * length + cell] = nothing);
+    }
+    let array = PyArray1::from_vec(py, values);
+    debug_assert_eq!(array.len(), shape.iter().product::<usize>());
+    Ok(array.reshape(shape.to_vec())?.into_any())
+}

@@ -1,0 +1,194 @@
+"""Cases: what is to be computed."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from os import PathLike, fspath
+from typing import Any
+
+import numpy as np
+import xarray as xr
+
+from . import _memory, _native, _toml
+from ._memory import Raster
+
+_NAMED = ("dem", "raster", "file", "polygons")
+
+
+class Case:
+    """What is to be computed: a case file, its text, or the same as keywords.
+
+    Every key of the case file has its place here (``docs/case-file.md``). Where a case names a file, an array or a geometry may
+    stand in its place:
+
+    ========================================  =====================================================================
+    key                                       may be
+    ========================================  =====================================================================
+    ``terrain.dem``, ``release.0.raster``     :class:`Raster`, ``xarray.DataArray`` (y, x); an array of the terrain's shape
+    ``release.0.polygons``                    shapely geometry, several of them, GeoDataFrame, GeoJSON as a dictionary
+    ``material.friction.coulomb.mu``, ...     the same as a raster: a parameter in space
+    ``initial.thickness``, ...                array of shape (cells) or (cells along y, cells along x), the lowest y first
+    ``section.0.line``, ``inflow.0.line``     shapely LineString, or points
+    ========================================  =====================================================================
+
+    Args:
+        source: path of a case file, or its text (what has a line break or a ``=`` is a text), or a dictionary.
+        tables: the tables of a case as keywords: ``grid={"x": {"from": -6, "to": 6, "cells": 240}}``.
+
+    Raises:
+        CaseError: at the first place that is not TOML, an unknown key, a wrong type or a missing key.
+        FileNotFoundError: there is no such file.
+
+    A case is looked at in full by :meth:`check`, and before it is run.
+    """
+
+    def __init__(self, source: str | PathLike[str] | Mapping[str, Any] | None = None, /, **tables: Any) -> None:
+        self._grounds: Raster | None = None
+        if isinstance(source, Mapping):
+            tables = {**source, **tables}
+        elif source is not None:
+            if tables:
+                raise TypeError("give a file, a text or keywords, not two of them; Case.set changes a key")
+            self._native = _read(fspath(source), isinstance(source, str))
+            self._on_terrain = "[terrain]" in self._native.to_toml()
+            return
+        self._on_terrain = "terrain" in tables
+        held: dict[str, Any] = {}
+        plain = self._plain("", tables, held)
+        native = _native.Case.from_text(_toml.document(plain), "<keywords>")
+        for name, given in held.items():
+            native = _hold(native, name, given)
+        native.to_toml()
+        self._native = native
+
+    def set(self, key: str, value: Any) -> Case:
+        """Changes a key, and returns the case.
+
+        Args:
+            key: as in ``"material.friction.coulomb.mu"``; entries of lists by their number: ``"release.0.thickness"``.
+            value: a number, a text, a list, a table as a dictionary; an array or a geometry in the place of a file.
+
+        Raises:
+            CaseError: there is no such key, or it does not take this value; the case is as before.
+        """
+        grounds = self._grounds
+        held: dict[str, Any] = {}
+        try:
+            plain = self._plain(key, value, held)
+            native = self._native
+            for name, given in held.items():
+                native = _hold(native, name, given)
+            native = native.with_override(f"{key}={_toml.value(plain)}")
+            native.to_toml()
+        except BaseException:
+            self._grounds = grounds
+            raise
+        self._native = native
+        return self
+
+    def copy(self) -> Case:
+        """A case of its own; arrays are shared, for a case never changes them."""
+        other = Case.__new__(Case)
+        other.__dict__.update(self.__dict__)
+        return other
+
+    def check(self) -> Case:
+        """Says everything that can be said before work starts, and returns the case.
+
+        Raises:
+            CaseError: the first thing that is wrong.
+        """
+        self._native.check()
+        return self
+
+    def describe(self) -> str:
+        """What would be computed, as ``granflow check`` prints it: cells, memory, steps."""
+        lines = self._native.describe()
+        width = max(len(name) for name, _ in lines)
+        return "\n".join(f"{name:<{width}}  {text}" for name, text in lines)
+
+    @property
+    def text(self) -> str:
+        """The case as one TOML document; what is in memory stands in it as a name in angle brackets."""
+        return self._native.resolved()
+
+    def to_toml(self) -> str:
+        """The case with its defaults, as TOML; angles are in radians."""
+        return self._native.to_toml()
+
+    def __repr__(self) -> str:
+        return f"<granflow.Case\n{self.text}>"
+
+    def _plain(self, path: str, given: Any, held: dict[str, Any]) -> Any:
+        """What TOML can say of a value; arrays and geometries in it go to `held` under the name that stands for them."""
+        last = path.rsplit(".", 1)[-1]
+        if last == "line" and is_line(given):
+            return _memory.line(given)
+        if _memory.is_geometry(given):
+            held[f"<{path}>"] = _memory.geojson(given)
+            return f"<{path}>" if last in _NAMED else {"polygons": f"<{path}>"}
+        if isinstance(given, Mapping):
+            inner = {}
+            for name, one in given.items():
+                inner[name] = self._plain(f"{path}.{name}" if path else name, one, held)
+            return inner
+        if isinstance(given, (list, tuple)):
+            return [self._plain(f"{path}.{index}", one, held) for index, one in enumerate(given)]
+        if isinstance(given, (Raster, xr.DataArray)) or (isinstance(given, np.ndarray) and given.ndim > 0):
+            return self._array(path, last, given, held)
+        return given
+
+    def _array(self, path: str, last: str, given: Any, held: dict[str, Any]) -> Any:
+        whole = last == "file" or (path.startswith("initial.") and path.count(".") == 1)
+        if not self._on_terrain and (whole or np.ndim(_values(given)) > 1):
+            name = f"<{path}>.npy"
+            held[name] = _memory.npy(_values(given))
+            return name if last in _NAMED else {"file": name}
+        if np.ndim(_values(given)) == 1:
+            return _values(given).tolist()
+        raster = self._raster(path, given)
+        if path == "terrain.dem":
+            self._grounds = raster
+        held[f"<{path}>"] = raster
+        return f"<{path}>" if last in _NAMED else {"raster": f"<{path}>"}
+
+    def _raster(self, path: str, given: Any) -> Raster:
+        if isinstance(given, Raster):
+            return given
+        if isinstance(given, xr.DataArray):
+            return Raster.from_dataarray(given)
+        grounds = self._grounds
+        if path == "terrain.dem" or grounds is None or np.shape(grounds.values) != given.shape:
+            other = "" if grounds is None else f" (the terrain has the shape {np.shape(grounds.values)})"
+            raise ValueError(
+                f"{path}: an array of shape {given.shape} does not say where its cells are{other}; "
+                "give granflow.Raster(values, cell=5.0, west=..., south=..., crs=...), or an xarray.DataArray with x and y"
+            )
+        return grounds.with_values(given)
+
+
+def is_line(given: Any) -> bool:
+    """A geometry in the place of the points of a line."""
+    return hasattr(given, "__geo_interface__")
+
+
+def as_case(given: Any) -> Case:
+    """A case, or what one can be made of."""
+    return given if isinstance(given, Case) else Case(given)
+
+
+def _values(given: Any) -> Any:
+    return given.values if isinstance(given, (Raster, xr.DataArray)) else given
+
+
+def _read(source: str, may_be_text: bool) -> _native.Case:
+    if may_be_text and ("\n" in source or "=" in source):
+        return _native.Case.from_text(source, "<text>")
+    return _native.Case.from_file(source)
+
+
+def _hold(native: _native.Case, name: str, given: Any) -> _native.Case:
+    if isinstance(given, Raster):
+        values = given.south_first()
+        return native.with_raster(name, values, given.west, given.south, given.cell, given.system())
+    return native.with_file(name, given)
