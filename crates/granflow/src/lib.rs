@@ -57,6 +57,7 @@
 //! | [`watch`] | gauges and sections of a case on the cells of its run |
 //! | [`model`], [`models`] | a model as files and figures see it; those of this library |
 //! | [`results`], [`output`] | what a run leaves; one file per format |
+//! | [`ensemble`] | many runs of one case with values drawn, added up to maps of probability |
 //! | [`compare`](mod@compare) | how well a run meets another one, or what was mapped |
 //! | [`speed`] | what a step costs: runs to measure by, and what the memory can do |
 //! | [`scheme`], [`real`], [`limiter`], [`time`], [`savage_hutter`], [`hadeler_kuttler`] | from `granflow-model`: what the papers say, as pointwise functions |

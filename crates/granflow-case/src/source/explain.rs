@@ -34,7 +34,12 @@ impl Source {
         match quoted.as_slice() {
             [found, known @ ..] if message.starts_with("unknown field") => {
                 let table = key.rsplit_once('.').map_or("the case", |(table, _)| table);
-                plain(format!("unknown key `{found}` in {table}")).allowed(found, known.iter().copied())
+                let error = plain(format!("unknown key `{found}` in {table}"));
+                if table.starts_with("ensemble.vary.") {
+                    let cure = "a key of the case stands in quotes, as in vary.\"material.friction.coulomb.mu\" = { uniform = [0.2, 0.4] }";
+                    return error.help(cure).allowed(found, known.iter().copied());
+                }
+                error.allowed(found, known.iter().copied())
             }
             [found, known @ ..] if message.starts_with("unknown variant") => {
                 plain(format!("found `{found}`, which is not one of the choices"))

@@ -80,6 +80,7 @@ fn bad_tables_are_refused_with_place_and_cure() {
     let table = [
         ("members = 8".to_owned(), "vary"),
         ("members = 8\nvary = {}".to_owned(), "nothing differs"),
+        ("members = 8\nvary.material.epsilon = { uniform = [0.1, 0.2] }".to_owned(), "stands in quotes"),
         (angle("{ uniform = [25, 15] }"), "a lower and a larger number"),
         (angle("{ uniform = [0.1, 0.2], choice = [1] }"), "exactly one of uniform"),
         (angle("{}"), "exactly one of uniform"),

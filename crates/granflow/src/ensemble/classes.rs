@@ -55,7 +55,7 @@ impl Classes {
     /// the straight line between its ends.
     pub fn percentile(&self, p: f64, all: u32, bits: u32) -> f64 {
         let counted: u32 = self.counts.iter().sum();
-        let mut left = p * f64::from(all) - f64::from(all - counted);
+        let mut left = p * f64::from(all) - f64::from(all.saturating_sub(counted));
         if left <= 0.0 {
             return 0.0;
         }

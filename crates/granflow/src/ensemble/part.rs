@@ -49,12 +49,12 @@ impl Ensemble {
     pub fn from_bytes(&self, bytes: &[u8], path: &Path) -> Result<Reduced, EnsembleError> {
         let (header, bytes) = part::decode(path, bytes, &self.origin)?;
         let mut reduced = self.empty();
-        decode(&mut Bytes(bytes), &header, self.plan.columns().len(), &mut reduced).ok_or_else(|| {
-            Error::Damaged {
-                path: path.to_owned(),
-                problem: "its numbers are not those that it announces; compute this part again".to_owned(),
-            }
-        })?;
+        let read = decode(&mut Bytes(bytes), &header, self.plan.columns().len(), &mut reduced);
+        let within = reduced.rows.keys().all(|number| *number < self.plan.members);
+        if read.is_none() || !within {
+            let problem = "its numbers are not those that it announces; compute this part again".to_owned();
+            return Err(Error::Damaged { path: path.to_owned(), problem }.into());
+        }
         Ok(reduced)
     }
 

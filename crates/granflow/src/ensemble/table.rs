@@ -24,7 +24,11 @@ impl Ensemble {
                 line = number.to_string();
                 for (value, column) in row.values.iter().zip(&columns) {
                     let _ = match &column.choices {
-                        Some(choices) => write!(line, ",{}", quoted(&choices[*value as usize])),
+                        Some(choices) => write!(
+                            line,
+                            ",{}",
+                            quoted(choices.get(*value as usize).map_or("", String::as_str))
+                        ),
                         None => write!(line, ",{value:?}"),
                     };
                 }

@@ -5,8 +5,9 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Mutex, PoisonError};
 use std::time::{Duration, Instant};
 
-/// Between two times that what is done is kept.
-const KEPT: Duration = Duration::from_secs(20);
+/// At least so long between two times that what is done is kept, and at least so many times what keeping it took.
+const PAUSE: Duration = Duration::from_secs(20);
+const RARER: u32 = 50;
 
 /// How far an ensemble is.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -27,6 +28,7 @@ struct Board<'a> {
     reduced: Reduced,
     progress: Progress,
     kept: Instant,
+    pause: Duration,
     error: Option<EnsembleError>,
     hear: &'a mut (dyn FnMut(Progress, Option<&Outcome>) + Send),
 }
@@ -54,8 +56,8 @@ impl Ensemble {
         let failed = reduced.failures().count();
         let progress = Progress { done: wanted - left.len(), wanted, failed, stepping_seconds: 0.0 };
         hear(progress, None);
-        let (left, kept) = (left.into_iter(), Instant::now());
-        let board = Mutex::new(Board { left, reduced, progress, kept, error: None, hear });
+        let (left, kept, pause) = (left.into_iter(), Instant::now(), PAUSE);
+        let board = Mutex::new(Board { left, reduced, progress, kept, pause, error: None, hear });
         std::thread::scope(|scope| {
             for number in 0..workers {
                 let work = || self.work(&board, stop, keep);
@@ -107,10 +109,12 @@ impl Board<'_> {
         }
         (self.hear)(self.progress, Some(&outcome));
         self.reduced.add(outcome);
-        if self.kept.elapsed() > KEPT {
+        if self.kept.elapsed() > self.pause {
+            let begun = Instant::now();
             if let Err(error) = keep(&self.reduced) {
                 self.error.get_or_insert(error);
             }
+            self.pause = PAUSE.max(RARER * begun.elapsed());
             self.kept = Instant::now();
         }
     }
