@@ -4,7 +4,7 @@ mod resumed;
 mod written;
 
 use granflow::Case;
-use granflow::case::{FileAccess, FileKind};
+use granflow::case::FileKind;
 use granflow::model::{At, Domain, Model, Plane, Quantity};
 use granflow::output::Precision;
 use granflow::output::folder::Folder;
