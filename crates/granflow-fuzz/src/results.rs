@@ -1,12 +1,12 @@
 //! What `plot` and `--resume` read again: files that a run left, changed since.
 
 use granflow::Case;
+use granflow::Inputs;
 use granflow::output::checkpoint::{Checkpoint, Origin};
 use granflow::output::frames::Frames;
 use granflow::output::ledger::Ledger;
 use granflow::output::summary::Summary;
 use granflow::results::Story;
-use granflow::Inputs;
 use granflow::session::{Options, origin};
 use std::path::Path;
 use std::sync::OnceLock;

@@ -40,9 +40,9 @@ pub use workers::Progress;
 
 use crate::StartError;
 use crate::case::{Case, CaseError};
+use crate::inputs::Inputs;
 use crate::model::Plane;
 use crate::models::Shared;
-use crate::inputs::Inputs;
 use crate::output;
 use crate::output::checkpoint::Origin;
 use crate::output::figures::PictureError;
