@@ -12,7 +12,7 @@ mod plane;
 #[cfg(feature = "figures")]
 mod profiles;
 mod quantity;
-#[cfg(feature = "figures")]
+#[cfg(feature = "files")]
 mod result_file;
 #[cfg(feature = "figures")]
 mod view;
@@ -29,7 +29,7 @@ pub use plane::Plane;
 #[cfg(feature = "figures")]
 pub use profiles::{Line, PILE, profiles};
 pub use quantity::{At, Kind, Quantity, Units};
-#[cfg(feature = "figures")]
+#[cfg(feature = "files")]
 pub use result_file::ResultFile;
 #[cfg(feature = "figures")]
 pub use view::View;

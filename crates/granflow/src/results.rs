@@ -21,11 +21,10 @@ use crate::output::folder::Folder;
 use crate::output::frames::Frames;
 use crate::output::ledger::Entry;
 use crate::output::lines::Table;
-use crate::output::netcdf::{Values, history};
+use crate::output::netcdf::Values;
 use crate::output::summary::Summary;
 use granflow_case::FileKind;
 use std::path::{Path, PathBuf};
-use std::time::SystemTime;
 
 /// A run that has ended, with all it leaves.
 #[derive(Debug)]
@@ -51,6 +50,8 @@ pub struct Finished {
     pub maps: Maps,
     /// The tables of gauges and of sections, where there are some.
     pub series: [Option<PathBuf>; 2],
+    /// The commands that computed it, with their dates, and where it went on with another case.
+    pub history: Vec<String>,
     /// The run in numbers.
     pub summary: Summary,
 }
@@ -66,13 +67,13 @@ impl Finished {
     ///
     /// # Errors
     /// [`output::Error`] naming the file.
-    pub fn write_result(&self, command: &str) -> Result<(), output::Error> {
+    pub fn write_result(&self) -> Result<(), output::Error> {
         let mut frames = self.frames.again()?;
         let stored = frames.fields().iter().map(|field| &field.name);
         let series = stored.map(|name| (name.as_str(), Values::Stored(name.clone()))).collect();
         let about = About {
             title: self.summary.title.clone(),
-            history: history(SystemTime::now(), command),
+            history: self.history.join("\n"),
             case: self.case.clone(),
             case_text: self.case_text.clone(),
             scheme: self.summary.scheme.clone(),

@@ -1,7 +1,7 @@
 //! From a case to its files: what the program `granflow run` does, as a function.
 
 use crate::output;
-use crate::output::checkpoint::{Origin, case_hash};
+use crate::output::checkpoint::Origin;
 use crate::output::folder::Folder;
 use crate::output::inputs::inputs;
 use crate::results::{FilesError, Finished, check_kinds};
@@ -114,6 +114,7 @@ impl Checked {
             notice(&format!("the files of an earlier run are now in {}", aside.display()));
         }
         let mut files = begin(folder, &plan, origin, command, &mut *run)?.since(begun);
+        files.went_on().into_iter().for_each(notice);
         let mut report = Callback(report);
         let sinks: &mut [&mut dyn Sink] = &mut [&mut Stop(stop), &mut report, &mut files];
         match drive(&mut *run, &plan.ends, sinks) {
@@ -132,11 +133,11 @@ impl Checked {
     }
 }
 
-/// What the run of a case is made of: its text, and what is in the files it names.
+/// What the run of a case is made of: the case, and what is in the files it names.
 ///
 /// # Errors
 /// [`output::Error`] naming a file that cannot be read.
 pub fn origin(plan: &RunPlan) -> Result<Origin, output::Error> {
     let inputs = inputs(&plan.inputs, |path| plan.as_written(path))?;
-    Ok(Origin { case: case_hash(&plan.text()), inputs })
+    Ok(Origin { case: plan.resolved(), inputs })
 }

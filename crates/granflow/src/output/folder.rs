@@ -6,12 +6,13 @@ use std::io::{self, Read, Seek, Write};
 use std::path::{Path, PathBuf};
 
 /// What a run leaves; an earlier run was here if one of the first four is there.
-const FILES: [&str; 15] = [
+const FILES: [&str; 16] = [
     "checkpoint/state.bin",
     "checkpoint/frames.bin",
     "summary.json",
     "result.nc",
     "mass.csv",
+    "checkpoint/before_end.bin",
     "gauges.csv",
     "sections.csv",
     "outlines.geojson",

@@ -2,6 +2,7 @@
 
 mod checkpoints;
 mod ending;
+mod going_on;
 mod series;
 mod writer;
 
@@ -9,20 +10,22 @@ use super::schedule::{Due, Schedule};
 use super::{Sink, SinkError};
 use crate::StartError;
 use crate::output;
-use crate::output::checkpoint::Origin;
+use crate::output::checkpoint::{Origin, Past};
 use crate::output::folder::Folder;
 use crate::output::frames::Frames;
 use crate::output::ledger::{Entry, Ledger};
 use crate::output::lines::Lines;
+use crate::output::netcdf::history;
 use crate::output::summary::{StopReason, Summary};
 use crate::results::{FilesError, Finished};
 use crate::run::{Run, check_state};
 use crate::watch::Watch;
+use checkpoints::Due as DueBeside;
 use ending::Ending;
 use granflow_case::RunPlan;
 use series::Series;
 use std::path::{Path, PathBuf};
-use std::time::Instant;
+use std::time::{Instant, SystemTime};
 use writer::Writer;
 
 /// Seconds on the clock from the first step to the checkpoint after it, and between two at most; the pause doubles from one
@@ -54,7 +57,7 @@ pub enum BeginError {
         problem: String,
     },
     /// The run in the folder has ended, and nothing of it is left to do.
-    #[error("{}: this run has ended ({}), there is nothing to go on with", directory.display(), summary.stop_reason)]
+    #[error("{}: this run has ended ({}), {}", directory.display(), summary.stop_reason, going_on::nothing_left(summary.stop_reason))]
     Ended {
         /// The folder.
         directory: PathBuf,
@@ -68,6 +71,10 @@ pub struct Files {
     folder: Folder,
     plan: RunPlan,
     origin: Origin,
+    /// The commands before this one, and where the run went on with another case.
+    past: Past,
+    /// It has just gone on with another case.
+    went_on: bool,
     command: String,
     writer: Writer,
     schedule: Schedule,
@@ -120,53 +127,6 @@ impl Files {
         Ok(files)
     }
 
-    /// Takes up the files in `folder` at their checkpoint, and puts `run` where it was.
-    ///
-    /// # Errors
-    /// [`BeginError`]; frames and ledger are then as the checkpoint needs them.
-    pub fn resume(
-        folder: Folder,
-        plan: &RunPlan,
-        origin: Origin,
-        command: &str,
-        run: &mut dyn Run,
-    ) -> Result<Files, BeginError> {
-        folder.sweep()?;
-        let directory = folder.path();
-        let refused = |problem: String| BeginError::Resume { directory: directory.to_owned(), problem };
-        let saved = checkpoints::file_in(directory);
-        if !saved.exists() {
-            let error = refused(format!("there is no checkpoint {}", saved.display()));
-            folder.abandon();
-            return Err(error);
-        }
-        let mut series = Series::new(Watch::of(plan, run).map_err(Box::new)?, plan.watched.every, run);
-        run.stepper_mut().release_buffers();
-        let taken = checkpoints::read(&saved, &origin, run)?;
-        if let (Some(_), Some(summary)) = (taken.ended, ended(directory)?) {
-            return Err(BeginError::Ended { directory: directory.to_owned(), summary: Box::new(summary) });
-        }
-        let [frames, ledger] = [frames_in(directory), ledger_in(directory)];
-        let tables = series.paths(directory);
-        for path in [&frames, &ledger].into_iter().chain(tables.iter().flatten()) {
-            if !path.exists() {
-                let problem = format!("{} is gone, which the checkpoint counts on", path.display());
-                return Err(refused(problem));
-            }
-        }
-        let (mut frames, _torn) = Frames::open(&frames)?;
-        let mut ledger = Ledger::open(&ledger)?;
-        frames.truncate_to(taken.marks.frames)?;
-        ledger.truncate_to(taken.marks.ledger)?;
-        let tables = series.resume(directory, taken.marks.series)?;
-        run.restore(taken.saved).map_err(refused)?;
-        let [frame, line, look] = taken.due;
-        series.resumed(look, run.time());
-        let mut files = Self::over(folder, plan, origin, command, run, (frames, ledger, tables), series)?;
-        files.schedule.resume([frame, line]);
-        Ok(files)
-    }
-
     fn over(
         folder: Folder,
         plan: &RunPlan,
@@ -181,13 +141,15 @@ impl Files {
         let written = [frames.times().last().copied(), line].map(|time| time.unwrap_or(f64::NEG_INFINITY));
         let checkpoint = checkpoints::file_in(folder.path());
         let count = frames.times().len() as u64;
-        let writer = Writer::start(frames, ledger, tables, checkpoint, command.to_owned())
+        let writer = Writer::start(frames, ledger, tables, checkpoint)
             .map_err(|error| BeginError::Thread(error.to_string()))?;
         Ok(Files {
             folder,
             plan: plan.clone(),
             origin,
-            command: command.to_owned(),
+            past: Past::default(),
+            went_on: false,
+            command: history(SystemTime::now(), command),
             writer,
             schedule: Schedule::new(plan.output.frames, run.plane()),
             series,
@@ -202,6 +164,13 @@ impl Files {
             pause: PAUSES[0],
             joined: Some((now, 0.0)),
         })
+    }
+
+    /// How the run came to where it stands, this command among it.
+    fn past_and_now(&self) -> Past {
+        let mut past = self.past.clone();
+        past.commands.push(self.command.clone());
+        past
     }
 
     /// Count wall time from then on: reading and setting up take their time too.
@@ -289,8 +258,12 @@ impl Files {
         self.saved = Instant::now();
         self.series.hand_over(&mut self.writer)?;
         let [frame, line] = self.schedule.next();
-        let due = [frame, line, self.series.next()];
-        self.writer.checkpoint(&checkpoints::of(run, &self.origin, due, ended))?;
+        let due = DueBeside {
+            next: [frame, line, self.series.next()],
+            every: [self.schedule.every(), self.series.every()],
+        };
+        let past = self.past_and_now();
+        self.writer.checkpoint(&checkpoints::of(run, (&self.origin, &past), due, ended))?;
         (self.cost, self.saving) = (self.saved.elapsed().as_secs_f64(), true);
         Ok(())
     }
@@ -303,6 +276,12 @@ impl Files {
     /// [`FilesError`]; what was complete before stays complete.
     pub fn finish(mut self, mut run: Box<dyn Run>, reason: StopReason) -> Result<Finished, FilesError> {
         if self.shown == run.steps() {
+            let before_end = checkpoints::before_end_in(self.folder.path());
+            if reason == StopReason::EndTime {
+                self.writer.keep(before_end)?;
+            } else {
+                output::remove_if_there(&before_end)?;
+            }
             // Before the last frame: where an interrupted run ends an unbroken one has none.
             self.checkpoint(&*run, Some(reason).filter(|reason| *reason != StopReason::Interrupted))?;
             if self.written[0] != run.time() {
@@ -310,11 +289,10 @@ impl Files {
             }
         }
         self.series.hand_over(&mut self.writer)?;
-        let command = self.command.clone();
         let ending = Ending::last(&self, run, reason);
         let (frames, ledger) = self.writer.end()?;
         let finished = ending.finished(Some(self.folder), frames, ledger.into_entries());
-        finished.write(&command)?;
+        finished.write()?;
         Ok(finished)
     }
 
@@ -325,12 +303,11 @@ impl Files {
     /// [`output::Error`] naming the file.
     pub fn give_up(mut self, run: Box<dyn Run>, failure: &str) -> Result<Finished, output::Error> {
         self.series.hand_over(&mut self.writer)?;
-        let command = self.command.clone();
         let mut ending = Ending::last(&self, run, StopReason::Failed);
         ending.explain(failure);
         let (frames, ledger) = self.writer.end()?;
         let finished = ending.finished(Some(self.folder), frames, ledger.into_entries());
-        finished.write_result(&command)?;
+        finished.write_result()?;
         finished.summary.write(&finished.directory.join("summary.json"))?;
         Ok(finished)
     }
@@ -359,15 +336,6 @@ impl Sink for Files {
         }
         self.step_taken(run, due).map_err(SinkError::of)
     }
-}
-
-/// How the run in a folder ended, where all its files are made and its frames are not kept any more.
-fn ended(directory: &Path) -> Result<Option<Summary>, output::Error> {
-    let (summary, result) = (directory.join("summary.json"), directory.join("result.nc"));
-    if frames_in(directory).exists() || !summary.exists() || !result.exists() {
-        return Ok(None);
-    }
-    Summary::read(&summary).map(Some)
 }
 
 fn frames_in(directory: &Path) -> PathBuf {

@@ -5,6 +5,8 @@ pub(crate) mod chute;
 pub(crate) mod describe;
 pub mod flowing;
 #[cfg(feature = "geo")]
+mod left;
+#[cfg(feature = "geo")]
 mod parameters;
 #[cfg(all(feature = "geo", feature = "threads"))]
 pub(crate) mod speed;

@@ -20,6 +20,7 @@ pub(super) struct Ending {
     plane: Plane,
     maps: Maps,
     series: [Option<PathBuf>; 2],
+    history: Vec<String>,
     summary: Summary,
 }
 
@@ -45,6 +46,7 @@ impl Ending {
 
     fn with(files: &Files, plane: Plane, maps: Maps, mut summary: Summary) -> Ending {
         count(&maps, &mut summary);
+        let past = files.past_and_now();
         Ending {
             directory: files.folder.path().to_owned(),
             files: files.plan.output.files.clone(),
@@ -53,6 +55,7 @@ impl Ending {
             plane,
             maps,
             series: files.series.paths(files.folder.path()),
+            history: past.commands.into_iter().chain(past.events).collect(),
             summary,
         }
     }
@@ -64,10 +67,25 @@ impl Ending {
 
     /// Put it together; `folder` keeps its lock for as long as files are made.
     pub fn finished(self, folder: Option<Folder>, frames: Frames, ledger: Vec<Entry>) -> Finished {
-        let Ending { directory, files, case, case_text, plane, mut maps, series, mut summary } = self;
+        let Ending { directory, files, case, case_text, plane, mut maps, series, history, mut summary } =
+            self;
         plane.derive(&mut maps, &mut summary);
-        summary.warnings = (plane.model().warnings)(plane.model(), &summary);
-        Finished { directory, folder, files, case, case_text, plane, frames, ledger, maps, series, summary }
+        let found = (plane.model().warnings)(plane.model(), &summary);
+        summary.warnings.extend(found);
+        Finished {
+            directory,
+            folder,
+            files,
+            case,
+            case_text,
+            plane,
+            frames,
+            ledger,
+            maps,
+            series,
+            history,
+            summary,
+        }
     }
 }
 
@@ -134,6 +152,14 @@ fn summary(files: &Files, run: &dyn Run, stop_reason: StopReason) -> Summary {
         if let Some(threshold) = threshold {
             summary.add(&format!("duration_{name}_threshold"), threshold);
         }
+    }
+    if !files.past.events.is_empty() {
+        summary.extra.insert("history".to_owned(), files.past.events.clone().into());
+    }
+    if files.past.mixed {
+        let text =
+            "the friction changed in the course of the run: peaks, times and runout are those of both parts";
+        summary.warnings.push(text.to_owned());
     }
     if let Some(Until::Steady { rate }) = plan.ends.until {
         summary.add("steady_rate", rate);

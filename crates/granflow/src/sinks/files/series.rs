@@ -77,6 +77,11 @@ impl Series {
         self.next
     }
 
+    /// Time between two looks; infinite where it looks after every step.
+    pub fn every(&self) -> f64 {
+        self.every.unwrap_or(f64::INFINITY)
+    }
+
     /// Go on with this instant, the last lines being those of `time`.
     pub fn resumed(&mut self, next: f64, time: f64) {
         (self.next, self.written) = (next, time);

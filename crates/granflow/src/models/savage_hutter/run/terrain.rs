@@ -302,6 +302,10 @@ fn curvature_of(plan: &Plan) -> Curvature {
 fn add(loaded: &mut Loaded, one: &Release, crs: Option<&Crs>) -> Result<(), StartError> {
     let bed = &loaded.terrain.bed;
     let (name, system, cells) = match &one.extent {
+        Extent::Result(path) => {
+            let (volume, system) = super::left::left_by(path, bed, &mut loaded.remarks)?;
+            (path.display().to_string(), Some(system), volume)
+        }
         Extent::Polygons { path, thickness } => {
             let thickness = match thickness {
                 Thickness::Constant(value) => release::Thickness::Value(*value),
@@ -324,6 +328,8 @@ fn add(loaded: &mut Loaded, one: &Release, crs: Option<&Crs>) -> Result<(), Star
         }
     };
     let measured = match one.measured {
+        // What a run left comes as its volume.
+        _ if matches!(one.extent, Extent::Result(_)) => release::Measured::Vertical,
         Measured::Normal => release::Measured::Normal,
         Measured::Vertical => release::Measured::Vertical,
     };

@@ -1,0 +1,37 @@
+//! What another run left, as a release.
+
+#[cfg(feature = "files")]
+use super::super::stored;
+#[cfg(feature = "files")]
+use super::terrain::described;
+use crate::StartError;
+use granflow_geo::Remark;
+use granflow_geo::raster::Raster;
+#[cfg(feature = "files")]
+use granflow_geo::release;
+use granflow_geo::release::Sparse;
+use std::path::Path;
+
+/// The volume per plan area that lies at the end of another run, on the cells of `bed`, and the system of that run.
+#[cfg(feature = "files")]
+pub(super) fn left_by(
+    path: &Path,
+    bed: &Raster,
+    remarks: &mut Vec<Remark>,
+) -> Result<(Sparse, String), StartError> {
+    let last = stored::last(path).map_err(|problem| StartError::Result { path: path.to_owned(), problem })?;
+    let (name, time) = (path.display(), last.time);
+    remarks.push(if last.rests {
+        Remark::Note(format!("{name}: what lay at rest at its end, t = {time} s, is released"))
+    } else {
+        Remark::Warning(format!(
+            "{name}: its mass still moved at its end, t = {time} s; here it starts at rest (--resume goes on with its speed)"
+        ))
+    });
+    Ok((release::carried(path, &last.volume, bed)?, described(last.volume.crs.as_ref())))
+}
+
+#[cfg(not(feature = "files"))]
+pub(super) fn left_by(_: &Path, _: &Raster, _: &mut Vec<Remark>) -> Result<(Sparse, String), StartError> {
+    Err(StartError::Feature { feature: "files" })
+}
