@@ -394,8 +394,9 @@ fn every_kind_is_written_once_and_is_in_order() {
         "sandpile_l",
         "silo_hole",
     ];
-    let poured = ["sandpile_switched", "sandpile_moving", "avalanche"];
-    assert_eq!(kinds, [&avalanches[..], &sandpiles[..], &poured[..]].concat());
+    let poured = ["sandpile_switched", "sandpile_moving"];
+    let mountains = ["avalanche", "snow_avalanche", "debris_flow", "rock_avalanche"];
+    assert_eq!(kinds, [&avalanches[..], &sandpiles[..], &poured[..], &mountains[..]].concat());
     for kind in kinds {
         let file = format!("{kind}.toml");
         assert_eq!(granflow(folder.path(), &["new", kind]).status.code(), Some(0), "{kind}");

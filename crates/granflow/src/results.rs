@@ -50,6 +50,10 @@ pub struct Finished {
     pub maps: Maps,
     /// The tables of gauges and of sections, where there are some.
     pub series: [Option<PathBuf>; 2],
+    /// The path that the case names.
+    pub path: Option<Vec<[f64; 2]>>,
+    /// How wide what passes along the path is looked at.
+    pub path_width: f64,
     /// The commands that computed it, with their dates, and where it went on with another case.
     pub history: Vec<String>,
     /// The run in numbers.

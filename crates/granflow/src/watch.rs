@@ -15,6 +15,8 @@ pub struct Watch {
     pub gauges: Vec<(String, usize)>,
     /// The sections.
     pub sections: Vec<WatchedSection>,
+    /// The path that the case names.
+    pub path: Option<Vec<[f64; 2]>>,
     /// What a reader decided, one sentence each.
     pub notes: Vec<String>,
 }
@@ -38,10 +40,13 @@ impl Watch {
     /// shorter than a cell; a file of a line that cannot be read.
     pub fn of(plan: &RunPlan, run: &dyn Run) -> Result<Watch, StartError> {
         let mut watch = Watch::default();
+        let plane = run.plane();
+        if let Some(path) = &plan.output.path {
+            watch.path = Some(path_on(path, plan, plane, &mut watch.notes)?);
+        }
         if plan.watched.is_empty() {
             return Ok(watch);
         }
-        let plane = run.plane();
         let nodes = Nodes::of(plane);
         for (index, gauge) in plan.watched.gauges.iter().enumerate() {
             let key = format!("gauge[{index}].at");
@@ -86,6 +91,20 @@ impl Watch {
     pub fn is_empty(&self) -> bool {
         self.gauges.is_empty() && self.sections.is_empty()
     }
+}
+
+/// The path that a case names, which must lie on the grid.
+fn path_on(
+    path: &std::path::Path,
+    plan: &RunPlan,
+    plane: &Plane,
+    notes: &mut Vec<String>,
+) -> Result<Vec<[f64; 2]>, StartError> {
+    let (points, nodes) = (from_file(path, plane, notes)?, Nodes::of(plane));
+    if let Some(point) = points.iter().find(|point| nodes.cell(point).is_none()) {
+        return Err(outside(plan, "output.path", point, &nodes));
+    }
+    Ok(points.iter().map(|point| [point[0], point[1]]).collect())
 }
 
 /// A cell without elevation has no value of some field.

@@ -159,6 +159,8 @@ fn run(name: &str, plane: Plane, full: &[f64], files: &[&str]) -> Finished {
         maps: vec![("source", source)],
         frames,
         ledger: ledger.entries().to_vec(),
+        path: None,
+        path_width: 0.0,
         history: vec!["test".to_owned()],
         summary,
         plane,

@@ -6,7 +6,7 @@ use std::io::{self, Read, Seek, Write};
 use std::path::{Path, PathBuf};
 
 /// What a run leaves; an earlier run was here if one of the first four is there.
-const FILES: [&str; 16] = [
+const FILES: [&str; 17] = [
     "checkpoint/state.bin",
     "checkpoint/frames.bin",
     "summary.json",
@@ -15,6 +15,7 @@ const FILES: [&str; 16] = [
     "checkpoint/before_end.bin",
     "gauges.csv",
     "sections.csv",
+    "range_time.csv",
     "outlines.geojson",
     "report.html",
     "profiles.csv",

@@ -20,6 +20,8 @@ pub(super) struct Ending {
     plane: Plane,
     maps: Maps,
     series: [Option<PathBuf>; 2],
+    path: Option<Vec<[f64; 2]>>,
+    path_width: f64,
     history: Vec<String>,
     summary: Summary,
 }
@@ -55,6 +57,8 @@ impl Ending {
             plane,
             maps,
             series: files.series.paths(files.folder.path()),
+            path: files.series.path(),
+            path_width: files.plan.output.path_width,
             history: past.commands.into_iter().chain(past.events).collect(),
             summary,
         }
@@ -67,8 +71,19 @@ impl Ending {
 
     /// Put it together; `folder` keeps its lock for as long as files are made.
     pub fn finished(self, folder: Option<Folder>, frames: Frames, ledger: Vec<Entry>) -> Finished {
-        let Ending { directory, files, case, case_text, plane, mut maps, series, history, mut summary } =
-            self;
+        let Ending {
+            directory,
+            files,
+            case,
+            case_text,
+            plane,
+            mut maps,
+            series,
+            path,
+            path_width,
+            history,
+            mut summary,
+        } = self;
         plane.derive(&mut maps, &mut summary);
         let found = (plane.model().warnings)(plane.model(), &summary);
         summary.warnings.extend(found);
@@ -83,6 +98,8 @@ impl Ending {
             ledger,
             maps,
             series,
+            path,
+            path_width,
             history,
             summary,
         }

@@ -52,6 +52,11 @@ impl Series {
         [0, 1].map(|k| used[k].then(|| directory.join(FILES[k].0)))
     }
 
+    /// The path that the case names.
+    pub fn path(&self) -> Option<Vec<[f64; 2]>> {
+        self.watch.path.clone()
+    }
+
     /// Begin the files.
     pub fn create(&self, directory: &Path) -> Result<[Option<Lines>; 2], Error> {
         self.opened(directory, |k, path| Lines::create(path, FILES[k].1))

@@ -2,11 +2,9 @@
 
 #[cfg(feature = "files")]
 use super::super::stored;
-#[cfg(feature = "files")]
-use super::terrain::described;
 use crate::StartError;
 use granflow_geo::Remark;
-use granflow_geo::raster::Raster;
+use granflow_geo::raster::{Crs, Raster};
 #[cfg(feature = "files")]
 use granflow_geo::release;
 use granflow_geo::release::Sparse;
@@ -18,7 +16,7 @@ pub(super) fn left_by(
     path: &Path,
     bed: &Raster,
     remarks: &mut Vec<Remark>,
-) -> Result<(Sparse, String), StartError> {
+) -> Result<(Sparse, Option<Crs>), StartError> {
     let last = stored::last(path).map_err(|problem| StartError::Result { path: path.to_owned(), problem })?;
     let (name, time) = (path.display(), last.time);
     remarks.push(if last.rests {
@@ -28,10 +26,14 @@ pub(super) fn left_by(
             "{name}: its mass still moved at its end, t = {time} s; here it starts at rest (--resume goes on with its speed)"
         ))
     });
-    Ok((release::carried(path, &last.volume, bed)?, described(last.volume.crs.as_ref())))
+    Ok((release::carried(path, &last.volume, bed)?, last.volume.crs))
 }
 
 #[cfg(not(feature = "files"))]
-pub(super) fn left_by(_: &Path, _: &Raster, _: &mut Vec<Remark>) -> Result<(Sparse, String), StartError> {
+pub(super) fn left_by(
+    _: &Path,
+    _: &Raster,
+    _: &mut Vec<Remark>,
+) -> Result<(Sparse, Option<Crs>), StartError> {
     Err(StartError::Feature { feature: "files" })
 }

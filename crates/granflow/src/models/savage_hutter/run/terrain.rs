@@ -304,7 +304,7 @@ fn add(loaded: &mut Loaded, one: &Release, crs: Option<&Crs>) -> Result<(), Star
     let (name, system, cells) = match &one.extent {
         Extent::Result(path) => {
             let (volume, system) = super::left::left_by(path, bed, &mut loaded.remarks)?;
-            (path.display().to_string(), Some(system), volume)
+            (path.display().to_string(), Some(described(system.as_ref())), volume)
         }
         Extent::Polygons { path, thickness } => {
             let thickness = match thickness {
