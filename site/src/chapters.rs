@@ -6,6 +6,7 @@ pub const PARTS: [(&str, &[&str]); 4] = [
         "Using it",
         &[
             "docs/first-steps.md",
+            "docs/hazard.md",
             "docs/case-file.md",
             "docs/outputs.md",
             "docs/ensemble.md",

@@ -30,6 +30,7 @@
 mod array;
 mod boundary;
 mod case;
+mod changes;
 mod checked;
 mod choice;
 mod durations;
@@ -57,6 +58,7 @@ mod watched;
 
 pub use boundary::Side;
 pub use case::Case;
+pub use changes::{Change, Concerns, changes};
 pub use checked::Checked;
 pub use durations::Durations;
 pub use ensemble::{Ensemble, Member};

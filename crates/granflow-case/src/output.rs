@@ -8,6 +8,7 @@ use crate::plan::{Ends, Frames, OutputPlan};
 use crate::precision::Precision;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
+use std::path::PathBuf;
 
 /// What is written.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize, JsonSchema)]
@@ -31,6 +32,13 @@ pub struct Output {
     /// Thresholds of which maps say for how long they were exceeded.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub durations: Option<Durations>,
+    /// On terrain: a GeoJSON file with the line along which the run is shown over time (default: found, from the highest release down
+    /// the core of the flow).
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub path: Option<PathBuf>,
+    /// On terrain: how wide what passes along the path is looked at, in metres (default 100).
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub path_width: Option<f64>,
     /// Thickness normal to the bed that a layer must exceed to count in peaks, times and outlines (default
     /// 0.01 m on terrain, 1e-3 on a chute).
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -46,6 +54,9 @@ pub(crate) struct Defaults {
     /// See [`OutputPlan::threshold`].
     pub threshold: f64,
 }
+
+/// How wide what passes along a path is looked at where nobody says it \[m\].
+const PATH_WIDTH: f64 = 100.0;
 
 /// Frames of a run whose end is known.
 const FRAMES: u32 = 20;
@@ -77,7 +88,18 @@ impl Output {
         look.not_negative("output.durations.thickness", durations.thickness)?;
         look.not_negative("output.durations.speed", durations.speed)?;
         look.not_negative("output.durations.pressure", durations.pressure)?;
+        look.positive("output.path_width", self.path_width)?;
+        for (key, given) in
+            [("output.path", self.path.is_some()), ("output.path_width", self.path_width.is_some())]
+        {
+            if given && !defaults.files.contains(&"report") {
+                return Err(look.fault(key, "a path needs [terrain]", "remove it: on a grid x is the path"));
+            }
+        }
+        self.path.iter().try_for_each(|path| look.file("output.path", path))?;
         Ok(OutputPlan {
+            path: self.path.as_ref().map(|path| look.locate(path)),
+            path_width: self.path_width.unwrap_or(PATH_WIDTH),
             frames,
             files: self.kinds(look, defaults.files)?,
             precision: self.precision.unwrap_or(defaults.precision),

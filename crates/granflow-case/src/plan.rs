@@ -93,6 +93,10 @@ pub struct OutputPlan {
     pub threshold: f64,
     /// Thresholds of which maps say for how long they were exceeded.
     pub durations: Durations,
+    /// A file with the path along which the run is shown over time; found where there is none.
+    pub path: Option<PathBuf>,
+    /// How wide what passes along it is looked at.
+    pub path_width: f64,
 }
 
 /// What ends a run; the first that is reached does.

@@ -86,7 +86,9 @@ impl From<StartError> for Failure {
     fn from(error: StartError) -> Self {
         match error {
             StartError::Case(error) => error.into(),
-            StartError::Raster(_) | StartError::Release(_) => Self::File(error.to_string()),
+            StartError::Raster(_) | StartError::Release(_) | StartError::Result { .. } => {
+                Self::File(error.to_string())
+            }
             StartError::Memory { .. } => {
                 Self::usage(error.to_string(), "granflow check says what a case needs")
             }

@@ -66,7 +66,7 @@ enum Command {
         /// Number of threads (default: all cores)
         #[arg(long, value_name = "N")]
         threads: Option<std::num::NonZeroUsize>,
-        /// Goes on from the last checkpoint of a run that was interrupted or killed
+        /// Goes on from the last checkpoint of a run that was interrupted, killed, or has ended; with --set to a later end or with other friction
         #[arg(long)]
         resume: bool,
         /// No progress

@@ -8,8 +8,11 @@ use std::fmt::Write;
 
 /// Size of a cell in metres.
 const CELL: f64 = 5.0;
-/// Cells along x and y.
-const CELLS: [usize; 2] = [200, 300];
+/// Cells along x.
+const COLUMNS: usize = 200;
+/// Cells along y, and of the mountain with a long foot, for laws of little friction.
+const ROWS: usize = 300;
+const LONG: usize = 600;
 /// Low corner in the coordinates of Austria Lambert (EPSG:31287).
 const CORNER: [f64; 2] = [250_000.0, 350_000.0];
 /// The outline of the release: distance to the gully's line and from the top, in metres.
@@ -23,11 +26,6 @@ const OUTLINE: [[f64; 2]; 8] = [
     [-20.0, 200.0],
     [-58.0, 158.0],
 ];
-
-/// Length of the mountain in metres, from the top (south) to the foot (north).
-fn length() -> f64 {
-    CELLS[1] as f64 * CELL
-}
 
 /// Where the gully runs, seen from the middle of the raster.
 fn line(s: f64) -> f64 {
@@ -50,17 +48,26 @@ fn height(x: f64, s: f64) -> f64 {
 
 /// The elevation as an ESRI ASCII grid, its first row in the north.
 pub fn elevation() -> String {
+    of_rows(ROWS)
+}
+
+/// The same mountain with twice as long a foot.
+pub fn long_elevation() -> String {
+    of_rows(LONG)
+}
+
+fn of_rows(rows: usize) -> String {
     let mut text = format!(
-        "ncols {}\nnrows {}\nxllcorner {}\nyllcorner {}\ncellsize {CELL}\nNODATA_value -9999\n",
-        CELLS[0], CELLS[1], CORNER[0], CORNER[1]
+        "ncols {COLUMNS}\nnrows {rows}\nxllcorner {}\nyllcorner {}\ncellsize {CELL}\nNODATA_value -9999\n",
+        CORNER[0], CORNER[1]
     );
     let centre = |index: usize| (index as f64 + 0.5) * CELL;
-    for row in 0..CELLS[1] {
-        for column in 0..CELLS[0] {
-            let x = centre(column) - 0.5 * CELLS[0] as f64 * CELL;
-            let end = if column + 1 == CELLS[0] { '\n' } else { ' ' };
+    for row in (0..rows).rev() {
+        for column in 0..COLUMNS {
+            let x = centre(column) - 0.5 * COLUMNS as f64 * CELL;
+            let end = if column + 1 == COLUMNS { '\n' } else { ' ' };
             // writing to a String does not fail
-            let _ = write!(text, "{:.2}{end}", height(x, length() - centre(row)));
+            let _ = write!(text, "{:.2}{end}", height(x, centre(row)));
         }
     }
     text
@@ -68,7 +75,7 @@ pub fn elevation() -> String {
 
 /// The release as GeoJSON, in the coordinates of the raster.
 pub fn release() -> String {
-    let middle = CORNER[0] + 0.5 * CELLS[0] as f64 * CELL;
+    let middle = CORNER[0] + 0.5 * COLUMNS as f64 * CELL;
     let points: Vec<String> = OUTLINE
         .iter()
         .chain(&OUTLINE[..1])
@@ -89,7 +96,7 @@ mod tests {
         let text = elevation();
         let rows: Vec<Vec<f64>> =
             text.lines().skip(6).map(|row| row.split(' ').map(|z| z.parse().unwrap()).collect()).collect();
-        assert_eq!((rows.len(), rows[0].len()), (CELLS[1], CELLS[0]));
+        assert_eq!((rows.len(), rows[0].len()), (ROWS, COLUMNS));
         let lowest = |row: &Vec<f64>| row.iter().copied().fold(f64::INFINITY, f64::min);
         assert!(rows.windows(2).all(|pair| lowest(&pair[0]) < lowest(&pair[1])));
         assert!(serde_json::from_str::<serde_json::Value>(&release()).is_ok());

@@ -6,8 +6,11 @@ use std::path::{Path, PathBuf};
 
 use granflow::case::nearest;
 
-use crate::failure::{Failure, print};
+use crate::failure::{Failure, print, tell};
 use crate::mountain;
+
+/// A file beside a case: its name, and what makes its text.
+type Beside = (&'static str, fn() -> String);
 
 /// A case to start from.
 #[derive(Debug)]
@@ -18,13 +21,36 @@ pub struct Template {
     pub about: &'static str,
     /// The commented case.
     pub text: &'static str,
+    /// The files beside it.
+    pub beside: &'static [Beside],
+    /// What to know before its numbers are used.
+    pub warning: Option<&'static str>,
 }
 
 macro_rules! template {
     ($kind:literal, $about:literal) => {
-        Template { kind: $kind, about: $about, text: include_str!(concat!("../cases/", $kind, ".toml")) }
+        template!($kind, $about, &[], None)
+    };
+    ($kind:literal, $about:literal, $beside:expr, $warning:expr) => {
+        Template {
+            kind: $kind,
+            about: $about,
+            text: include_str!(concat!("../cases/", $kind, ".toml")),
+            beside: $beside,
+            warning: $warning,
+        }
     };
 }
+
+/// The built-in mountain and a release on it; the same with a long foot, for laws of little friction.
+const MOUNTAIN: &[Beside] = &[("mountain.asc", mountain::elevation), ("release.geojson", mountain::release)];
+const LONG_MOUNTAIN: &[Beside] =
+    &[("long_mountain.asc", mountain::long_elevation), ("release.geojson", mountain::release)];
+
+const UNCALIBRATED: Option<&str> = Some(
+    "its parameters are printed values for other sites, not calibrated for yours: vary them over the range that the case names, and hold \
+     the result against what was mapped (granflow compare)",
+);
 
 /// The commented case of an avalanche on the built-in mountain.
 pub const AVALANCHE: &str = include_str!("../cases/avalanche.toml");
@@ -49,7 +75,30 @@ pub const TEMPLATES: &[Template] = &[
     template!("silo_hole", "a silo empties through a hole in its floor"),
     template!("sandpile_switched", "three sources switched on and off"),
     template!("sandpile_moving", "a source that goes round"),
-    template!("avalanche", "a mountain, a release and the way to rest; writes a small mountain too"),
+    template!(
+        "avalanche",
+        "a mountain, a release and the way to rest; writes a small mountain too",
+        MOUNTAIN,
+        None
+    ),
+    template!(
+        "snow_avalanche",
+        "a dense snow avalanche, Voellmy's law with the values of Buser & Frutiger (1980); a mountain too",
+        LONG_MOUNTAIN,
+        UNCALIBRATED
+    ),
+    template!(
+        "debris_flow",
+        "a debris flow by its hydrograph, Voellmy's law with the start values of RAMMS; a mountain too",
+        LONG_MOUNTAIN,
+        UNCALIBRATED
+    ),
+    template!(
+        "rock_avalanche",
+        "a rock avalanche, Voellmy's law with the values of Hungr & Evans (1996); a mountain too",
+        LONG_MOUNTAIN,
+        UNCALIBRATED
+    ),
 ];
 
 /// Prints the kinds.
@@ -75,10 +124,7 @@ pub fn new(kind: &str, file: Option<PathBuf>) -> Result<(), Failure> {
     };
     let file = file.unwrap_or_else(|| PathBuf::from(format!("{kind}.toml")));
     let mut files = vec![(file.clone(), template.text.to_owned())];
-    if kind == "avalanche" {
-        files.push((file.with_file_name("mountain.asc"), mountain::elevation()));
-        files.push((file.with_file_name("release.geojson"), mountain::release()));
-    }
+    files.extend(template.beside.iter().map(|(name, text)| (file.with_file_name(name), text())));
     // The same mountain serves any number of cases.
     files.retain(|(path, text)| *path == file || std::fs::read_to_string(path).ok().as_ref() != Some(text));
     if let Some((path, _)) = files.iter().find(|(path, _)| path.exists()) {
@@ -88,6 +134,9 @@ pub fn new(kind: &str, file: Option<PathBuf>) -> Result<(), Failure> {
         write_new(path, text)?;
     }
     let written: Vec<String> = files.iter().map(|(path, _)| path.display().to_string()).collect();
+    if let Some(warning) = template.warning {
+        tell(&format!("warning: {warning}\n"));
+    }
     print(&format!("wrote {}; run it with: granflow run {}\n", written.join(", "), file.display()))
 }
 

@@ -242,7 +242,8 @@ const ON_TERRAIN: &[Bad] = &[
     ("thickness = 1.0", "", 7, &["`release[0].thickness`", "missing", "attribute"], 2),
     ("thickness = 1.0", "thickness = -1.0", 9, &["`release[0].thickness`: found -1"], 2),
     ("thickness = 1.0", "thickness = { attribut = \"d\" }", 9, &["did you mean `attribute`?"], 2),
-    ("thickness = 1.0", "raster = \"dem.asc\"", 7, &["exactly one of polygons, raster, cap"], 2),
+    ("thickness = 1.0", "result = \"dem.asc\"", 7, &["exactly one of polygons, raster, cap, result"], 2),
+    ("thickness = 1.0", "raster = \"dem.asc\"", 7, &["exactly one of polygons, raster, cap, result"], 2),
     (
         "polygons = \"release.geojson\"",
         "cap = { height = 1.0, centre = [0.0, 0.0], radius = 5.0 }",
@@ -393,8 +394,9 @@ fn every_kind_is_written_once_and_is_in_order() {
         "sandpile_l",
         "silo_hole",
     ];
-    let poured = ["sandpile_switched", "sandpile_moving", "avalanche"];
-    assert_eq!(kinds, [&avalanches[..], &sandpiles[..], &poured[..]].concat());
+    let poured = ["sandpile_switched", "sandpile_moving"];
+    let mountains = ["avalanche", "snow_avalanche", "debris_flow", "rock_avalanche"];
+    assert_eq!(kinds, [&avalanches[..], &sandpiles[..], &poured[..], &mountains[..]].concat());
     for kind in kinds {
         let file = format!("{kind}.toml");
         assert_eq!(granflow(folder.path(), &["new", kind]).status.code(), Some(0), "{kind}");

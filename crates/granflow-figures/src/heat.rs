@@ -20,6 +20,8 @@ pub enum Frame {
     Plane,
     /// Cell centres along x, instants along y; the picture reaches from the first instant to the last.
     SpaceTime,
+    /// Instants along x, cell centres along y.
+    TimeSpace,
 }
 
 /// A line over a map or a plane: a release area, the edge of a table, a path.
@@ -197,8 +199,8 @@ impl Figure for HeatMap<'_> {
         let cells = self.xs.len() * self.ys.len();
         FigureError::same_length(self.title, "the field", self.values.len(), cells)?;
         let range = self.range()?;
-        let x = Scale::new(Self::covered(self.xs, true));
-        let y = Scale::new(Self::covered(self.ys, self.frame == Frame::Plane));
+        let x = Scale::new(Self::covered(self.xs, self.frame != Frame::TimeSpace));
+        let y = Scale::new(Self::covered(self.ys, self.frame != Frame::SpaceTime));
         let (x_caption, y_caption) = (self.x.caption(), self.y.caption());
         let bar = ColourBar { colours: self.colours, range, caption: self.quantity.caption() };
         let top = heading_height(self.title, self.subtitle);

@@ -82,7 +82,7 @@ pub fn checkpoint(bytes: &[u8]) {
     for bytes in [bytes, &sealed] {
         on_disk("state.bin", bytes, |path| {
             for left in left() {
-                let Ok((mut saved, _)) = Checkpoint::read(path, &left.origin) else { continue };
+                let Ok((mut saved, ..)) = Checkpoint::read(path, &left.origin) else { continue };
                 drop((saved.take("state_0"), saved.scalar("clock_0")));
             }
         });

@@ -10,5 +10,5 @@ pub mod release;
 mod remark;
 pub mod terrain;
 
-pub use line::line;
+pub use line::{line, line_from};
 pub use remark::Remark;

@@ -13,8 +13,20 @@ use std::path::Path;
 /// `terrain`.
 pub fn line(path: &Path, terrain: Option<&Raster>) -> Result<(Vec<[f64; 2]>, Vec<Remark>), ReleaseError> {
     let bytes = std::fs::read(path).map_err(|source| ReleaseError::Io { path: path.into(), source })?;
+    line_from(path, &bytes, terrain)
+}
+
+/// The same of a file with this content; messages name `path`.
+///
+/// # Errors
+/// As [`line()`].
+pub fn line_from(
+    path: &Path,
+    bytes: &[u8],
+    terrain: Option<&Raster>,
+) -> Result<(Vec<[f64; 2]>, Vec<Remark>), ReleaseError> {
     let unreadable = |problem: String| ReleaseError::Unreadable { path: path.into(), problem };
-    let text = String::from_utf8_lossy(&bytes);
+    let text = String::from_utf8_lossy(bytes);
     let text = text.trim_start_matches('\u{feff}');
     if !text.trim_start().starts_with('{') {
         let cure = format!("it is no GeoJSON; convert it with\n  ogr2ogr line.geojson {}", path.display());

@@ -1,6 +1,8 @@
 //! What a case names: from memory, else from the disk.
 
 #[cfg(feature = "geo")]
+use granflow_geo::Remark;
+#[cfg(feature = "geo")]
 use granflow_geo::raster::{Crs, Raster, RasterError, Reading};
 #[cfg(feature = "geo")]
 use granflow_geo::release::{Layer, ReleaseError};
@@ -103,6 +105,18 @@ impl Inputs {
         match kept(&self.rasters, path) {
             Some(raster) => Reading::of_memory(path, raster.clone(), crs, false),
             None => Reading::of_numbers(path, crs),
+        }
+    }
+
+    /// The points of a line, in the system of `terrain`.
+    pub(crate) fn line(
+        &self,
+        path: &Path,
+        terrain: Option<&Raster>,
+    ) -> Result<(Vec<[f64; 2]>, Vec<Remark>), ReleaseError> {
+        match kept(&self.files, path) {
+            Some(bytes) => granflow_geo::line_from(path, bytes, terrain),
+            None => granflow_geo::line(path, terrain),
         }
     }
 

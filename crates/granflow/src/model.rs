@@ -3,6 +3,8 @@
 //! Files, report, animation and `granflow plot` go over these and name no model. A model gives one [`Model`] and,
 //! for each kind of place that it flows on, one [`Domain`]; the models of this library stand in [`crate::models`].
 
+#[cfg(feature = "figures")]
+mod along;
 mod domain;
 #[cfg(feature = "figures")]
 mod drawing;
@@ -16,8 +18,12 @@ mod quantity;
 mod result_file;
 #[cfg(feature = "figures")]
 mod view;
+#[cfg(feature = "figures")]
+mod watched;
 
 pub use crate::field::Field;
+#[cfg(feature = "figures")]
+pub use along::Along;
 pub use domain::{Domain, Maps, Model, Words};
 #[cfg(feature = "figures")]
 pub use domain::{Instants, Pictures, Scene};
@@ -33,3 +39,5 @@ pub use quantity::{At, Kind, Quantity, Units};
 pub use result_file::ResultFile;
 #[cfg(feature = "figures")]
 pub use view::View;
+#[cfg(feature = "figures")]
+pub use watched::watched;

@@ -48,9 +48,8 @@ pub(crate) fn start(
 
 /// What a checked case would compute.
 pub(crate) fn describe(run: &RunPlan, kind: Kind, inputs: &Inputs) -> Result<Vec<Line>, StartError> {
-    let _ = inputs;
     match kind {
-        Kind::Chute(plan) => savage_hutter::run::describe::chute(run, &plan),
+        Kind::Chute(plan) => savage_hutter::run::describe::chute(run, &plan, inputs),
         #[cfg(feature = "geo")]
         Kind::Terrain(plan) => savage_hutter::run::describe::terrain(run, &plan, inputs),
         #[cfg(not(feature = "geo"))]

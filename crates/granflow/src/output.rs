@@ -17,6 +17,7 @@ pub mod ledger;
 pub mod lines;
 pub mod mark;
 pub mod netcdf;
+mod origin;
 #[cfg(feature = "geo")]
 pub mod outlines;
 #[cfg(all(feature = "figures", feature = "geo"))]
@@ -155,6 +156,13 @@ pub fn whole_file(path: &Path, fill: impl FnOnce(&mut dyn Write) -> io::Result<(
         sync_folder(folder)
     };
     write().map_err(Error::io(path, "write"))
+}
+
+/// Gives a file that is only replaced, never changed, a second name, over an older file of that name.
+pub(crate) fn keep(file: &Path, name: &Path) -> Result<(), Error> {
+    remove_if_there(name)?;
+    // A file system may have no second names.
+    fs::hard_link(file, name).or_else(|_| fs::copy(file, name).map(drop)).map_err(Error::io(name, "write"))
 }
 
 /// Where a file of this name is written before [`settle`] gives it that name.

@@ -53,6 +53,12 @@ pub struct Finished {
     pub maps: Maps,
     /// The tables of gauges and of sections, where there are some.
     pub series: [Option<PathBuf>; 2],
+    /// The path that the case names.
+    pub path: Option<Vec<[f64; 2]>>,
+    /// How wide what passes along the path is looked at.
+    pub path_width: f64,
+    /// The commands that computed it, with their dates, and where it went on with another case.
+    pub history: Vec<String>,
     /// The run in numbers.
     pub summary: Summary,
 }
@@ -68,7 +74,7 @@ impl Finished {
     ///
     /// # Errors
     /// [`output::Error`] naming the file.
-    pub fn write_result(&self, command: &str) -> Result<(), output::Error> {
+    pub fn write_result(&self) -> Result<(), output::Error> {
         let mut frames = self.frames.again()?;
         let stored: Vec<String> = frames.fields().iter().map(|field| field.name.clone()).collect();
         let series = stored.iter().map(|name| (name.as_str(), Values::Stored(name.clone()))).collect();
@@ -85,7 +91,9 @@ impl Finished {
             case: [&self.case, &self.case_text],
         };
         let path = self.result();
-        let result = contents.dataset(command).map_err(|problem| output::Error::invalid(&path, problem))?;
+        let result = contents
+            .dataset(self.history.join("\n"))
+            .map_err(|problem| output::Error::invalid(&path, problem))?;
         result.write(&path, Some(&mut frames))
     }
 

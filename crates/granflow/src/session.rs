@@ -2,7 +2,7 @@
 
 use crate::inputs::Inputs;
 use crate::output;
-use crate::output::checkpoint::{Origin, case_hash};
+use crate::output::checkpoint::Origin;
 use crate::output::folder::Folder;
 use crate::output::inputs::{Input, inputs};
 use crate::results::{FilesError, Finished, check_kinds};
@@ -114,9 +114,10 @@ impl Checked {
     ) -> Result<Kept, RunError> {
         let begun = Instant::now();
         threads(number)?.install(|| {
-            let plan = self.plan().clone();
+            let (plan, inputs) = (self.plan().clone(), self.inputs().clone());
             let mut run = self.start()?;
-            let mut keep = Keep::begin(&plan, begun, &mut *run)?;
+            let watch = Watch::of(&plan, &inputs, &*run)?;
+            let mut keep = Keep::begin(&plan, begun, watch, &mut *run);
             let mut report = Callback(report);
             let sinks: &mut [&mut dyn Sink] = &mut [&mut Stop(stop), &mut report, &mut keep];
             match drive(&mut *run, &plan.ends, sinks) {
@@ -133,16 +134,17 @@ impl Checked {
         stop: &AtomicBool,
         report: &mut (dyn FnMut(&dyn Run) + Send),
     ) -> Result<Finished, RunError> {
-        let plan = self.plan().clone();
+        let (plan, inputs) = (self.plan().clone(), self.inputs().clone());
         let folder = Folder::take(directory)?;
         // Looked at before anything is read: what changes while it is being read is noticed by the next resume.
-        let started = origin(&plan, self.inputs()).map_err(RunError::from).and_then(|origin| {
+        let started = origin(&plan, &inputs).map_err(RunError::from).and_then(|origin| {
             let run = self.start()?;
             check_kinds(&plan.output.files, run.plane())?;
-            Watch::of(&plan, &*run)?.notes.iter().for_each(|note| notice(note));
-            Ok((origin, run))
+            let watch = Watch::of(&plan, &inputs, &*run)?;
+            watch.notes.iter().for_each(|note| notice(note));
+            Ok((origin, watch, run))
         });
-        let (origin, mut run) = match started {
+        let (origin, watch, mut run) = match started {
             Ok(started) => started,
             Err(error) => {
                 folder.abandon();
@@ -153,10 +155,8 @@ impl Checked {
         if !resume && let Some(aside) = folder.clear()? {
             notice(&format!("the files of an earlier run are now in {}", aside.display()));
         }
-        let mut files = begin(folder, &plan, origin, command, &mut *run)?.since(begun);
-        if let Some(text) = files.notice() {
-            notice(text);
-        }
+        let mut files = begin(folder, &plan, origin, command, watch, &mut *run)?.since(begun);
+        files.notices().for_each(notice);
         let mut report = Callback(report);
         let sinks: &mut [&mut dyn Sink] = &mut [&mut Stop(stop), &mut report, &mut files];
         match drive(&mut *run, &plan.ends, sinks) {
@@ -175,7 +175,7 @@ impl Checked {
     }
 }
 
-/// What the run of a case is made of: its text, and what is in the files it names, on the disk or in memory.
+/// What the run of a case is made of: the case, and what is in the files it names, on the disk or in memory.
 ///
 /// # Errors
 /// [`output::Error`] naming a file that cannot be read.
@@ -187,5 +187,5 @@ pub fn origin(plan: &RunPlan, memory: &Inputs) -> Result<Origin, output::Error> 
         let (bytes, crc) = memory.fingerprint(path)?;
         Some(Input { name: plan.as_written(path).display().to_string(), bytes, crc })
     }));
-    Ok(Origin { case: case_hash(&plan.text()), inputs })
+    Ok(Origin { case: plan.resolved(), inputs })
 }

@@ -17,6 +17,14 @@ pub enum StartError {
     #[cfg(feature = "geo")]
     #[error(transparent)]
     Release(Box<granflow_geo::release::ReleaseError>),
+    /// A release names the result of a run that cannot be used.
+    #[error("{}: {problem}; name the folder of a finished run on terrain, or its result.nc", path.display())]
+    Result {
+        /// The file.
+        path: std::path::PathBuf,
+        /// What is wrong with it.
+        problem: String,
+    },
     /// The numbers do not make a simulation.
     #[error(transparent)]
     Build(#[from] granflow_engine::simulation::BuildError),

@@ -3,6 +3,7 @@
 mod stairs;
 
 use crate::StartError;
+use crate::inputs::Inputs;
 use crate::model::Plane;
 use crate::run::{Face, Run};
 use granflow_case::{Line, RunPlan};
@@ -15,6 +16,8 @@ pub struct Watch {
     pub gauges: Vec<(String, usize)>,
     /// The sections.
     pub sections: Vec<WatchedSection>,
+    /// The path that the case names.
+    pub path: Option<Vec<[f64; 2]>>,
     /// What a reader decided, one sentence each.
     pub notes: Vec<String>,
 }
@@ -31,17 +34,20 @@ pub struct WatchedSection {
 }
 
 impl Watch {
-    /// Finds the cells and faces.
+    /// Finds the cells and faces; a line that is not among `inputs` is a file on the disk.
     ///
     /// # Errors
     /// [`StartError::Case`] naming the key of a place that is outside the grid or has no elevation, and of a line that is
     /// shorter than a cell; a file of a line that cannot be read.
-    pub fn of(plan: &RunPlan, run: &dyn Run) -> Result<Watch, StartError> {
+    pub fn of(plan: &RunPlan, inputs: &Inputs, run: &dyn Run) -> Result<Watch, StartError> {
         let mut watch = Watch::default();
+        let plane = run.plane();
+        if let Some(path) = &plan.output.path {
+            watch.path = Some(path_on(path, plan, inputs, plane, &mut watch.notes)?);
+        }
         if plan.watched.is_empty() {
             return Ok(watch);
         }
-        let plane = run.plane();
         let nodes = Nodes::of(plane);
         for (index, gauge) in plan.watched.gauges.iter().enumerate() {
             let key = format!("gauge[{index}].at");
@@ -58,7 +64,9 @@ impl Watch {
             let key = format!("section[{index}]");
             let (key, points) = match &section.line {
                 Line::Points(points) => (format!("{key}.line"), points.clone()),
-                Line::File(path) => (format!("{key}.file"), from_file(path, plane, &mut watch.notes)?),
+                Line::File(path) => {
+                    (format!("{key}.file"), from_file(path, inputs, plane, &mut watch.notes)?)
+                }
             };
             if let Some(point) = points.iter().find(|point| nodes.cell(point).is_none()) {
                 return Err(outside(plan, &key, point, &nodes));
@@ -86,6 +94,21 @@ impl Watch {
     pub fn is_empty(&self) -> bool {
         self.gauges.is_empty() && self.sections.is_empty()
     }
+}
+
+/// The path that a case names, which must lie on the grid.
+fn path_on(
+    path: &std::path::Path,
+    plan: &RunPlan,
+    inputs: &Inputs,
+    plane: &Plane,
+    notes: &mut Vec<String>,
+) -> Result<Vec<[f64; 2]>, StartError> {
+    let (points, nodes) = (from_file(path, inputs, plane, notes)?, Nodes::of(plane));
+    if let Some(point) = points.iter().find(|point| nodes.cell(point).is_none()) {
+        return Err(outside(plan, "output.path", point, &nodes));
+    }
+    Ok(points.iter().map(|point| [point[0], point[1]]).collect())
 }
 
 /// A cell without elevation has no value of some field.
@@ -117,10 +140,11 @@ fn outside(plan: &RunPlan, key: &str, at: &[f64], nodes: &Nodes) -> StartError {
 #[cfg(feature = "geo")]
 fn from_file(
     path: &std::path::Path,
+    inputs: &Inputs,
     plane: &Plane,
     notes: &mut Vec<String>,
 ) -> Result<Vec<Vec<f64>>, StartError> {
-    let (points, remarks) = granflow_geo::line(path, plane.domain.raster())?;
+    let (points, remarks) = inputs.line(path, plane.domain.raster())?;
     notes.extend(remarks.iter().map(ToString::to_string));
     Ok(points.into_iter().map(Vec::from).collect())
 }
@@ -128,6 +152,7 @@ fn from_file(
 #[cfg(not(feature = "geo"))]
 fn from_file(
     _path: &std::path::Path,
+    _inputs: &Inputs,
     _plane: &Plane,
     _notes: &mut Vec<String>,
 ) -> Result<Vec<Vec<f64>>, StartError> {

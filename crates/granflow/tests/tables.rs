@@ -158,6 +158,9 @@ fn run(name: &str, plane: Plane, full: &[f64], files: &[&str]) -> Finished {
         maps: vec![("source", source)],
         frames,
         ledger: ledger.entries().to_vec(),
+        path: None,
+        path_width: 0.0,
+        history: vec!["test".to_owned()],
         summary,
         plane,
     }
@@ -201,7 +204,7 @@ fn picture(path: &Path) -> (u32, u32, u32) {
 #[test]
 fn every_file_of_a_square_table_opens_and_holds_the_pile() {
     let run = square();
-    run.write_result("test").unwrap();
+    run.write_result().unwrap();
     let written = run.write_files().unwrap();
     assert!(written.iter().all(|path| path.exists()), "{written:?}");
     let out = |name: &str| run.directory.join(name);
@@ -248,7 +251,7 @@ fn every_file_of_a_square_table_opens_and_holds_the_pile() {
 #[test]
 fn every_file_of_a_line_opens_and_holds_the_pile() {
     let run = line();
-    run.write_result("test").unwrap();
+    run.write_result().unwrap();
     run.write_files().unwrap();
     for name in ["pile", "rolling_layer", "history"] {
         picture(&run.figures().join(format!("{name}.png")));
@@ -279,7 +282,7 @@ fn tables_of_any_shape_are_drawn_the_same_from_run_and_file() {
     ];
     for ((name, plane), full) in [("disc", disc), ("hole", hole), ("corner", corner)].into_iter().zip(&full) {
         let run = run(name, plane, full, &["figures"]);
-        run.write_result("test").unwrap();
+        run.write_result().unwrap();
         run.write_files().unwrap();
         let again = run.directory.join("again");
         let figures = Story::read(&run.result()).unwrap().draw(&again).unwrap();

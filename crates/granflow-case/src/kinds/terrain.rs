@@ -183,7 +183,7 @@ impl Written for Words {
             return Err(look.fault(
                 "release",
                 "a case with [terrain] needs a [[release]] that starts by itself, or an [[inflow]]",
-                "add [[release]] with polygons, raster or cap",
+                "add [[release]] with polygons, raster, cap or result",
             ));
         }
         look.file("terrain.dem", &terrain.dem)?;

@@ -182,6 +182,41 @@ mod tests {
         assert_eq!(plane.resample(1.0), plane);
     }
 
+    /// A part of an elevation model on coarser cells: exact for a plane, and of rough ground the mean over the area of each cell.
+    #[test]
+    fn a_part_on_coarser_cells_is_exact_on_planes_and_keeps_the_mean() {
+        let region = [2.9, 21.1, 3.9, 18.2];
+        let plane = sampled(24, 20, |x, y| 2.0 * x - 3.0 * y + 700.0);
+        // Neighbours like dice: a value of each cell of its own.
+        let rough = sampled(24, 20, |x, y| ((12.9898 * x + 78.233 * y).sin() * 43_758.545).fract());
+        for cell in [1.5, 2.0, 2.5, 3.0] {
+            let part = plane.cropped(region).unwrap();
+            let coarse = part.resample(cell);
+            assert_eq!((coarse.west, coarse.south, coarse.cell), (part.west, part.south, cell));
+            for k in 0..coarse.values.len() {
+                let (x, y) = (coarse.x(k % coarse.columns), coarse.y(k / coarse.columns));
+                // Where cells are cut, the mean of steps is that of the plane up to the steps' own asymmetry.
+                let exact = 2.0 * x - 3.0 * y + 700.0;
+                let bound = if cell.fract() == 0.0 { 1e-11 } else { 0.5 * (2.0 + 3.0) / cell };
+                assert!((coarse.values[k] - exact).abs() < bound, "{cell}: {} {exact}", coarse.values[k]);
+            }
+            let part = rough.cropped(region).unwrap();
+            let coarse = part.resample(cell);
+            for k in 0..coarse.values.len() {
+                let (low, left) = (k / coarse.columns, k % coarse.columns);
+                let mut sum = 0.0;
+                // By quadrature on sixteen points a length, each in one cell of the file.
+                let points = (16.0 * cell) as usize;
+                for (i, j) in (0..points * points).map(|n| (n % points, n / points)) {
+                    let at = |first: usize, n: usize| (first as f64) * cell + (n as f64 + 0.5) / 16.0;
+                    sum += part.at(at(left, i) as usize, at(low, j) as usize);
+                }
+                let mean = sum / (points * points) as f64;
+                assert!((coarse.values[k] - mean).abs() < 1e-11, "{cell}: {} {mean}", coarse.values[k]);
+            }
+        }
+    }
+
     #[test]
     fn a_coarse_cell_needs_values_over_half_its_area() {
         let ragged = sampled(4, 2, |x, y| if x < 2.0 && (x < 1.0 || y < 1.0) { f64::NAN } else { 5.0 });

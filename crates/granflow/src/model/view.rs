@@ -1,7 +1,9 @@
 //! A run as its figures see it: plain numbers, from the run itself or from its files.
 
+use super::along::Along;
 use super::quantity::Units;
 use crate::output::ledger::Entry;
+use crate::output::lines::Table;
 use std::borrow::Cow;
 
 /// A run as its figures see it.
@@ -25,6 +27,10 @@ pub struct View<'a> {
     pub maps: Vec<(&'static str, Cow<'a, [f64]>)>,
     /// The ledger; empty where it is not known.
     pub ledger: Vec<Entry>,
+    /// The tables of gauges and of sections, where there are some.
+    pub watched: [Option<Table>; 2],
+    /// What passed along the path, where that is known.
+    pub along: Option<Along>,
 }
 
 impl View<'_> {

@@ -11,6 +11,8 @@ mod path;
 #[cfg(feature = "figures")]
 mod pictures;
 pub mod run;
+#[cfg(all(feature = "files", feature = "geo"))]
+mod stored;
 #[cfg(feature = "geo")]
 mod terrain;
 

@@ -1,39 +1,33 @@
 //! The checkpoint: everything a run needs to go on bit for bit.
 //!
-//! Layout, all little endian: the line `granflow checkpoint 4`, a u32 length, that many bytes of JSON (version,
-//! case, inputs, step, end, names and lengths), then as raw f64 the time and the scalars, then the arrays as raw
+//! Layout, all little endian: the line `granflow checkpoint 5`, a u32 length, that many bytes of JSON (version,
+//! case, inputs, past, step, end, names and lengths), then as raw f64 the time and the scalars, then the arrays as raw
 //! f64 or f32, then how far frames, ledger, gauges.csv and sections.csv had come (u64 records, u32
 //! CRC-32 of them, four times), then the CRC-32 of all before.
 
-use super::inputs::{Input, difference};
 use super::mark::Mark;
+pub use super::origin::{Origin, Past};
 use super::{Error, Precision, Summed, whole_file};
 use crate::stop_reason::StopReason;
+use granflow_case::Change;
 use serde::{Deserialize, Serialize};
 use std::borrow::Cow;
 use std::fs::File;
 use std::io::{self, BufReader, Read, Write};
 use std::path::Path;
 
-const MAGIC: &[u8] = b"granflow checkpoint 4\n";
+const MAGIC: &[u8] = b"granflow checkpoint 5\n";
 const VERSION: &str = env!("CARGO_PKG_VERSION");
 /// Numbers that are turned from or into bytes in one go.
 const AT_ONCE: usize = 1 << 15;
-
-/// What a run was made of: it goes on with nothing else.
-#[derive(Debug, Clone, PartialEq, Eq, Default, Serialize, Deserialize)]
-pub struct Origin {
-    /// What identifies the case, such as [`case_hash`] of its resolved text.
-    pub case: String,
-    /// The files that the case names, as they were when the run began.
-    pub inputs: Vec<Input>,
-}
 
 /// The state of a run between two steps.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Checkpoint<'a> {
     /// What the run was made of.
     pub origin: Origin,
+    /// How it came to where it stands.
+    pub past: Past,
     /// Why the run has ended, where it has.
     pub ended: Option<StopReason>,
     /// Steps done.
@@ -104,16 +98,11 @@ struct Header {
     granflow: String,
     #[serde(flatten)]
     origin: Origin,
+    past: Past,
     ended: Option<StopReason>,
     step: u64,
     scalars: Vec<String>,
     arrays: Vec<(String, usize, Precision)>,
-}
-
-/// A short name for the text of a case: its length and CRC-32, to tell an edited case from the one that was run.
-#[must_use]
-pub fn case_hash(text: &str) -> String {
-    format!("{}-{:08x}", text.len(), crc32fast::hash(text.as_bytes()))
 }
 
 impl Checkpoint<'_> {
@@ -138,6 +127,7 @@ impl Checkpoint<'_> {
         let header = Header {
             granflow: VERSION.into(),
             origin: self.origin.clone(),
+            past: self.past.clone(),
             ended: self.ended,
             step: self.step,
             scalars: self.scalars.iter().map(|(name, _)| name.clone()).collect(),
@@ -189,12 +179,13 @@ pub(crate) fn write_from(
 }
 
 impl Checkpoint<'static> {
-    /// Reads the checkpoint of a run of this origin, every bit as it was written.
+    /// Reads the checkpoint of a run that goes on with this origin, every bit as it was written; says what changes.
     ///
     /// # Errors
     /// [`Error::Io`] if there is none; [`Error::Damaged`] if it is truncated or altered; [`Error::Mismatch`] if it
-    /// was written by another version of granflow (whose last bits may differ), for another case, or with other inputs.
-    pub fn read(path: &Path, origin: &Origin) -> Result<(Self, Marks), Error> {
+    /// was written by another version of granflow (whose last bits may differ), or the state stands on what
+    /// differs in the case or in its inputs.
+    pub fn read(path: &Path, origin: &Origin) -> Result<(Self, Marks, Vec<Change>), Error> {
         let unread = || Error::io(path, "read");
         let file = File::open(path).map_err(unread())?;
         let size = file.metadata().map_err(unread())?.len();
@@ -224,10 +215,10 @@ impl Checkpoint<'static> {
         if crc != computed.to_le_bytes() {
             return Err(altered(path));
         }
-        header.check(path, origin)?;
-        let Header { origin, ended, step, scalars, .. } = header;
+        let changes = header.check(path, origin)?;
+        let Header { origin, past, ended, step, scalars, .. } = header;
         let scalars = scalars.into_iter().zip(front).collect();
-        Ok((Self { origin, ended, step, time, scalars, arrays }, marks))
+        Ok((Self { origin, past, ended, step, time, scalars, arrays }, marks, changes))
     }
 
     /// The array called `name`, which is then no longer in the checkpoint.
@@ -287,8 +278,8 @@ impl Header {
         Ok(header)
     }
 
-    /// Checks that it is of this version of granflow and of this origin.
-    fn check(&self, path: &Path, origin: &Origin) -> Result<(), Error> {
+    /// Checks that it is of this version of granflow and can go on with this origin; says what changes.
+    fn check(&self, path: &Path, origin: &Origin) -> Result<Vec<Change>, Error> {
         if self.granflow != VERSION {
             let problem = format!(
                 "written by granflow {}, this is {VERSION}, so the run could not go on bit for bit; \
@@ -297,21 +288,7 @@ impl Header {
             );
             return Err(Error::mismatch(path, problem));
         }
-        if self.origin.case != origin.case {
-            let problem = format!(
-                "the checkpoint is of another case ({}) than the one given ({}); \
-                 give the case as it was, another --out, or start again without --resume",
-                self.origin.case, origin.case
-            );
-            return Err(Error::mismatch(path, problem));
-        }
-        if let Some(difference) = difference(&self.origin.inputs, &origin.inputs) {
-            let problem = format!(
-                "{difference}, so the run cannot go on; put it back as it was, or start again without --resume"
-            );
-            return Err(Error::mismatch(path, problem));
-        }
-        Ok(())
+        self.origin.changes(origin).map_err(|problem| Error::mismatch(path, problem))
     }
 }
 

@@ -7,15 +7,17 @@ use std::io::{self, Read, Seek, Write};
 use std::path::{Path, PathBuf};
 
 /// What a run leaves; an earlier run was here if one of the first five is there.
-const FILES: [&str; 21] = [
+const FILES: [&str; 23] = [
     "checkpoint/ensemble.part",
     "checkpoint/state.bin",
     "checkpoint/frames.bin",
     "summary.json",
     "result.nc",
     "mass.csv",
+    "checkpoint/before_end.bin",
     "gauges.csv",
     "sections.csv",
+    "range_time.csv",
     "outlines.geojson",
     "report.html",
     "profiles.csv",

@@ -115,6 +115,7 @@ pub fn write_report(path: &Path, report: Report) -> Result<(), Error> {
             (summary.model) ", " (summary.scheme) ", " (summary.cells) " cells, " (summary.steps) " steps, "
             (readable(summary.wall_seconds)) " s on " (summary.threads) " threads, granflow " (summary.version)
         }
+        @for event in summary.texts("history") { p { "This run " (event) "." } }
         @for warning in &summary.warnings { p.warning role="note" { strong { "Note: " } (warning) } }
         h2 { "Key figures" }
         table.key {

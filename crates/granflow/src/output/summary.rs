@@ -94,6 +94,12 @@ impl Summary {
         self.extra.get(key)?.as_f64()
     }
 
+    /// The texts under a key beyond the fixed ones.
+    pub fn texts(&self, key: &str) -> impl Iterator<Item = &str> {
+        let list = self.extra.get(key).and_then(serde_json::Value::as_array);
+        list.into_iter().flatten().filter_map(serde_json::Value::as_str)
+    }
+
     /// A volume by what there was at the start and what came, by sources or over open edges; 0 where there was nothing.
     #[must_use]
     pub fn share(&self, volume: f64) -> f64 {

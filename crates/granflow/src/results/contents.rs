@@ -5,9 +5,8 @@ use super::watched;
 use crate::model::{Maps, Plane};
 use crate::output::Precision;
 use crate::output::lines::Table;
-use crate::output::netcdf::{Dataset, Values, history};
+use crate::output::netcdf::{Dataset, Values};
 use crate::output::summary::Summary;
-use std::time::SystemTime;
 
 /// A run from a case, as a result shows it.
 pub(crate) struct Contents<'a> {
@@ -24,15 +23,15 @@ pub(crate) struct Contents<'a> {
 }
 
 impl<'a> Contents<'a> {
-    /// The dataset, made by `command`.
+    /// The dataset, which `history` says how it was made.
     ///
     /// # Errors
     /// The name of a series or a map that is no quantity of the model.
-    pub fn dataset(self, command: &str) -> Result<Dataset<'a>, String> {
+    pub fn dataset(self, history: String) -> Result<Dataset<'a>, String> {
         let Contents { plane, precision, times, series, maps, tables, summary, case } = self;
         let about = About {
             title: summary.title.clone(),
-            history: history(SystemTime::now(), command),
+            history,
             case: case[0].to_owned(),
             case_text: case[1].to_owned(),
             scheme: summary.scheme.clone(),

@@ -34,11 +34,11 @@ impl Finished {
     ///
     /// # Errors
     /// [`FilesError`] naming the file; the others are written nevertheless.
-    pub fn write(&self, command: &str) -> Result<Vec<PathBuf>, FilesError> {
+    pub fn write(&self) -> Result<Vec<PathBuf>, FilesError> {
         // A thread of its own: it mostly waits for the disk, and the pool's draw meanwhile.
         let (result, files) = std::thread::scope(|scope| {
             let result = scope.spawn(|| {
-                self.write_result(command)?;
+                self.write_result()?;
                 self.summary.write(&self.directory.join("summary.json"))
             });
             let files = self.write_files();

@@ -1,6 +1,7 @@
 //! The figures of a run, as it ends or as it stands.
 
 use crate::model::Plane;
+use crate::output::checkpoint::Past;
 use crate::output::summary::{StopReason, Summary};
 use crate::run::{Maps, Run, Until, mass_error, sum};
 use granflow_case::RunPlan;
@@ -19,7 +20,20 @@ pub(crate) struct Start {
 pub(crate) fn complete(plane: &Plane, maps: &mut Maps, summary: &mut Summary) {
     count(maps, summary);
     plane.derive(maps, summary);
-    summary.warnings = (plane.model().warnings)(plane.model(), summary);
+    let found = (plane.model().warnings)(plane.model(), summary);
+    summary.warnings.extend(found);
+}
+
+/// Say of a run that went on with another case where, and what its figures then are.
+pub(crate) fn went_on(past: &Past, summary: &mut Summary) {
+    if !past.events.is_empty() {
+        summary.extra.insert("history".to_owned(), past.events.clone().into());
+    }
+    if past.mixed {
+        let text =
+            "the friction changed in the course of the run: peaks, times and runout are those of both parts";
+        summary.warnings.push(text.to_owned());
+    }
 }
 
 /// Put the largest of the maps of peaks and times, in which films do not count, for the figures of the run.

@@ -1,15 +1,17 @@
 //! What the figures need of a run, from the run itself or from its files.
 
 use super::{FilesError, Finished};
-use crate::model::{Domain, Kind, Model, Pictures, Plane, ResultFile, View, save_all};
+use crate::model::{Along, Domain, Kind, Model, Pictures, Plane, ResultFile, View, save_all};
 use crate::models::MODELS;
 use crate::output;
 use crate::output::figures::short;
+use crate::output::frames::Frames;
 use crate::output::ledger::Ledger;
+use crate::output::lines::Table;
 use crate::output::report;
 use crate::output::summary::Summary;
 use granflow_case::open_file;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 /// A run as its figures see it, and the domain that draws it.
@@ -62,7 +64,9 @@ impl<'r> Story<'r> {
         }
         let summary = &run.summary;
         let reason = summary.stop_reason.to_string();
-        let view = View {
+        let table = |path: &Option<PathBuf>| path.as_ref().map(|path| Table::read(path)).transpose();
+        let watched = [table(&run.series[0])?, table(&run.series[1])?];
+        let mut view = View {
             title: summary.title.clone(),
             subtitle: subtitle(plane, &summary.scheme, &reason, Some(summary.time)),
             units: plane.domain.units(),
@@ -72,7 +76,10 @@ impl<'r> Story<'r> {
             series,
             maps: run.maps.iter().map(|(name, map)| (*name, map.into())).collect(),
             ledger: run.ledger.clone(),
+            watched,
+            along: None,
         };
+        view.along = along(run, &view, &mut frames)?;
         Ok(Story { view, domain: plane.domain.clone() })
     }
 
@@ -113,6 +120,8 @@ impl<'r> Story<'r> {
         for map in model.of_kind(Kind::Map).filter(|map| file.has(map.name)) {
             maps.push((map.name, file.whole(map.name).map_err(foreign)?.into()));
         }
+        let table = |name: &str| beside(name).map(|path| Table::read(&path)).transpose();
+        let watched = [table("gauges.csv")?, table("sections.csv")?];
         let view = View {
             title: file.text("title"),
             subtitle: subtitle(&plane, &file.text("scheme"), &file.text("stop_reason"), time),
@@ -121,6 +130,8 @@ impl<'r> Story<'r> {
             series,
             maps,
             ledger,
+            watched,
+            along: None,
             x: plane.x,
             y: plane.y,
         };
@@ -135,6 +146,15 @@ impl<'r> Story<'r> {
         let Some(pictures) = self.domain.model().pictures else { return Ok(Vec::new()) };
         Ok(save_all(&pictures.figures(&self.view, &*self.domain), folder)?)
     }
+}
+
+/// What passed along the path that the case names, else along that which is found, where mass flows on a map.
+fn along(run: &Finished, view: &View, frames: &mut Frames) -> Result<Option<Along>, FilesError> {
+    let domain = &*run.plane.domain;
+    let Some(pictures) = domain.model().pictures.filter(|_| domain.projected()) else { return Ok(None) };
+    let Some(points) = run.path.clone().or_else(|| pictures.path(view, domain)) else { return Ok(None) };
+    let threshold = run.summary.threshold.unwrap_or(0.0);
+    Ok(Along::of((&points, run.path_width), [&run.plane.x, &run.plane.y], threshold, frames)?)
 }
 
 /// The model that a file names; of a file that names none of these, the first whose variables it has.

@@ -3,27 +3,29 @@
 mod checkpoints;
 mod ended;
 mod ending;
+mod going_on;
 mod writer;
 
 use super::schedule::{Due, Schedule};
 use super::series::Series;
 use super::{Sink, SinkError};
-use crate::StartError;
 use crate::output;
-use crate::output::checkpoint::Origin;
+use crate::output::checkpoint::{Origin, Past};
 use crate::output::folder::Folder;
 use crate::output::frames::Frames;
 use crate::output::ledger::{Entry, Ledger};
 use crate::output::lines::Lines;
+use crate::output::netcdf::history;
 use crate::output::summary::{StopReason, Summary};
 use crate::results::numbers::Start;
 use crate::results::{FilesError, Finished};
 use crate::run::{Run, check_state};
 use crate::watch::Watch;
+use checkpoints::Due as DueBeside;
 use ending::Ending;
 use granflow_case::RunPlan;
 use std::path::{Path, PathBuf};
-use std::time::Instant;
+use std::time::{Instant, SystemTime};
 use writer::Writer;
 
 /// Seconds on the clock from the first step to the checkpoint after it, and between two at most; the pause doubles from one
@@ -40,9 +42,6 @@ pub enum BeginError {
     /// A file could not be read or written.
     #[error(transparent)]
     Output(#[from] output::Error),
-    /// A gauge or a section cannot be looked at.
-    #[error(transparent)]
-    Watch(#[from] Box<StartError>),
     /// The writing thread could not be started.
     #[error("cannot start the threads: {0}")]
     Thread(String),
@@ -55,7 +54,10 @@ pub enum BeginError {
         problem: String,
     },
     /// The run in the folder has ended, and nothing of it is left to do.
-    #[error("{}: this run has ended ({}), and all {files} files that it left are whole", directory.display(), summary.stop_reason)]
+    #[error(
+        "{}: this run has ended ({}), and all {files} files that it left are whole; {}",
+        directory.display(), summary.stop_reason, ended::nothing_left(summary.stop_reason)
+    )]
     Ended {
         /// The folder.
         directory: PathBuf,
@@ -86,6 +88,10 @@ pub struct Files {
     folder: Folder,
     plan: RunPlan,
     origin: Origin,
+    /// The commands before this one, and where the run went on with another case.
+    past: Past,
+    /// It was taken up at its end, and stands there: its checkpoints are what they must be.
+    at_end: bool,
     command: String,
     writer: Writer,
     schedule: Schedule,
@@ -105,8 +111,8 @@ pub struct Files {
     pause: f64,
     /// When the series were last joined and what it cost \[s\]; `None` while they are being joined.
     joined: Option<(Instant, f64)>,
-    /// What happened to the files before the first step.
-    notice: Option<String>,
+    /// What happened to the run and its files before the first step.
+    notices: Vec<String>,
 }
 
 impl Files {
@@ -120,13 +126,14 @@ impl Files {
         plan: &RunPlan,
         origin: Origin,
         command: &str,
+        watch: Watch,
         run: &mut dyn Run,
     ) -> Result<Files, BeginError> {
         folder.sweep()?;
         let directory = folder.path();
         let frames = Frames::create(&frames_in(directory), plan.output.precision, run.plane().series())?;
         let ledger = Ledger::create(&ledger_in(directory), run.plane().outlets())?;
-        let series = Series::new(Watch::of(plan, run).map_err(Box::new)?, plan.watched.every, run);
+        let series = Series::new(watch, plan.watched.every, run);
         let tables = series.create(directory)?;
         let mut files = Self::over(folder, plan, origin, command, run, (frames, ledger, tables), series)?;
         files.frame(run)?;
@@ -134,57 +141,6 @@ impl Files {
         files.series.plan(run);
         // From the first instant on a run that is killed goes on.
         files.checkpoint(run, None)?;
-        Ok(files)
-    }
-
-    /// Takes up the files in `folder` at their checkpoint, and puts `run` where it was.
-    ///
-    /// # Errors
-    /// [`BeginError`]; frames and ledger are then as the checkpoint needs them.
-    pub fn resume(
-        folder: Folder,
-        plan: &RunPlan,
-        origin: Origin,
-        command: &str,
-        run: &mut dyn Run,
-    ) -> Result<Files, BeginError> {
-        folder.sweep()?;
-        let directory = folder.path();
-        let refused = |problem: String| BeginError::Resume { directory: directory.to_owned(), problem };
-        let saved = checkpoints::file_in(directory);
-        if !saved.exists() {
-            let error = refused(format!("there is no checkpoint {}", saved.display()));
-            folder.abandon();
-            return Err(error);
-        }
-        let mut series = Series::new(Watch::of(plan, run).map_err(Box::new)?, plan.watched.every, run);
-        run.stepper_mut().release_buffers();
-        let taken = checkpoints::read(&saved, &origin, run)?;
-        let notice = match taken.ended {
-            Some(reason) if !frames_in(directory).exists() => {
-                Some(ended::taken_up(&folder, plan, run, reason, taken.marks.frames)?)
-            }
-            _ => None,
-        };
-        let [frames, ledger] = [frames_in(directory), ledger_in(directory)];
-        let tables = series.paths(directory);
-        for path in [&frames, &ledger].into_iter().chain(tables.iter().flatten()) {
-            if !path.exists() {
-                let problem = format!("{} is gone, which the checkpoint counts on", path.display());
-                return Err(refused(problem));
-            }
-        }
-        let (mut frames, _torn) = Frames::open(&frames)?;
-        let mut ledger = Ledger::open(&ledger)?;
-        frames.truncate_to(taken.marks.frames)?;
-        ledger.truncate_to(taken.marks.ledger)?;
-        let tables = series.resume(directory, taken.marks.series)?;
-        run.restore(taken.saved).map_err(refused)?;
-        let [frame, line, look] = taken.due;
-        series.resumed(look, run.time());
-        let mut files = Self::over(folder, plan, origin, command, run, (frames, ledger, tables), series)?;
-        files.schedule.resume([frame, line]);
-        files.notice = notice;
         Ok(files)
     }
 
@@ -202,13 +158,15 @@ impl Files {
         let written = [frames.times().last().copied(), line].map(|time| time.unwrap_or(f64::NEG_INFINITY));
         let checkpoint = checkpoints::file_in(folder.path());
         let count = frames.times().len() as u64;
-        let writer = Writer::start(frames, ledger, tables, checkpoint, command.to_owned())
+        let writer = Writer::start(frames, ledger, tables, checkpoint)
             .map_err(|error| BeginError::Thread(error.to_string()))?;
         Ok(Files {
             folder,
             plan: plan.clone(),
             origin,
-            command: command.to_owned(),
+            past: Past::default(),
+            at_end: false,
+            command: history(SystemTime::now(), command),
             writer,
             schedule: Schedule::new(plan.output.frames, run.plane()),
             series,
@@ -221,14 +179,20 @@ impl Files {
             saving: false,
             pause: PAUSES[0],
             joined: Some((now, 0.0)),
-            notice: None,
+            notices: Vec::new(),
         })
     }
 
-    /// What happened to the files of an earlier run when this one took them up, in a sentence.
-    #[must_use]
-    pub fn notice(&self) -> Option<&str> {
-        self.notice.as_deref()
+    /// What happened to an earlier run and its files when this one took them up, in sentences.
+    pub fn notices(&self) -> impl Iterator<Item = &str> {
+        self.notices.iter().map(String::as_str)
+    }
+
+    /// How the run came to where it stands, this command among it.
+    fn past_and_now(&self) -> Past {
+        let mut past = self.past.clone();
+        past.commands.push(self.command.clone());
+        past
     }
 
     /// Count wall time from then on: reading and setting up take their time too.
@@ -310,7 +274,7 @@ impl Files {
             Due::Line => self.line(run)?,
             Due::Nothing => {}
         }
-        self.shown = run.steps();
+        (self.shown, self.at_end) = (run.steps(), false);
         if let Some(beside) = self.writer.saved() {
             self.cost += beside;
             self.saving = false;
@@ -327,10 +291,26 @@ impl Files {
         self.saved = Instant::now();
         self.hand_over()?;
         let [frame, line] = self.schedule.next();
-        let due = [frame, line, self.series.next()];
-        self.writer.checkpoint(&checkpoints::of(run, &self.origin, due, ended))?;
+        let due = DueBeside {
+            next: [frame, line, self.series.next()],
+            every: [self.schedule.every(), self.series.every()],
+        };
+        let past = self.past_and_now();
+        self.writer.checkpoint(&checkpoints::of(run, (&self.origin, &past), due, ended))?;
         (self.cost, self.saving) = (self.saved.elapsed().as_secs_f64(), true);
         Ok(())
+    }
+
+    /// Save the state at the end; of one that the end may have cut the checkpoint before it too.
+    fn last_checkpoint(&mut self, run: &dyn Run, reason: StopReason) -> Result<(), output::Error> {
+        let before_end = checkpoints::before_end_in(self.folder.path());
+        if reason == StopReason::EndTime {
+            self.writer.keep(before_end)?;
+        } else {
+            output::remove_if_there(&before_end)?;
+        }
+        // Before the last frame: where an interrupted run ends an unbroken one has none.
+        self.checkpoint(run, Some(reason).filter(|reason| *reason != StopReason::Interrupted))
     }
 
     /// Write the last frame and everything that the case asks for. What is done with is given back on the way: to end takes
@@ -341,18 +321,18 @@ impl Files {
     /// [`FilesError`]; what was complete before stays complete.
     pub fn finish(mut self, mut run: Box<dyn Run>, reason: StopReason) -> Result<Finished, FilesError> {
         if self.shown == run.steps() {
-            // Before the last frame: where an interrupted run ends an unbroken one has none.
-            self.checkpoint(&*run, Some(reason).filter(|reason| *reason != StopReason::Interrupted))?;
+            if !self.at_end {
+                self.last_checkpoint(&*run, reason)?;
+            }
             if self.written[0] != run.time() {
                 self.frame(&mut *run)?;
             }
         }
         self.hand_over()?;
-        let command = self.command.clone();
         let ending = Ending::last(&self, run, reason);
         let (frames, ledger) = self.writer.end()?;
         let finished = ending.finished(Some(self.folder), frames, ledger.into_entries());
-        finished.write(&command)?;
+        finished.write()?;
         Ok(finished)
     }
 
@@ -363,12 +343,11 @@ impl Files {
     /// [`output::Error`] naming the file.
     pub fn give_up(mut self, run: Box<dyn Run>, failure: &str) -> Result<Finished, output::Error> {
         self.hand_over()?;
-        let command = self.command.clone();
         let mut ending = Ending::last(&self, run, StopReason::Failed);
         ending.explain(failure);
         let (frames, ledger) = self.writer.end()?;
         let finished = ending.finished(Some(self.folder), frames, ledger.into_entries());
-        finished.write_result(&command)?;
+        finished.write_result()?;
         finished.summary.write(&finished.directory.join("summary.json"))?;
         Ok(finished)
     }

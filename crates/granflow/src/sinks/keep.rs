@@ -3,10 +3,9 @@
 use super::schedule::{Due, Schedule};
 use super::series::Series;
 use super::{Sink, SinkError};
-use crate::StartError;
 use crate::model::Plane;
 use crate::output::lines::Table;
-use crate::output::netcdf::{Dataset, Values};
+use crate::output::netcdf::{Dataset, Values, history};
 use crate::output::summary::{StopReason, Summary};
 use crate::output::{Error, Precision};
 use crate::results::Contents;
@@ -15,7 +14,7 @@ use crate::run::{Maps, Run, check_state};
 use crate::watch::Watch;
 use granflow_case::RunPlan;
 use std::path::Path;
-use std::time::Instant;
+use std::time::{Instant, SystemTime};
 
 /// The numbers of a series in the precision that the case asks for.
 #[derive(Debug, Clone, PartialEq)]
@@ -85,11 +84,9 @@ pub struct Kept {
 
 impl Keep {
     /// Begins with the present state of `run` as the first frame; wall time counts from `begun` on.
-    ///
-    /// # Errors
-    /// [`StartError`] of a gauge or a section that cannot be looked at.
-    pub fn begin(plan: &RunPlan, begun: Instant, run: &mut dyn Run) -> Result<Keep, StartError> {
-        let watched = Series::new(Watch::of(plan, run)?, plan.watched.every, run);
+    #[must_use]
+    pub fn begin(plan: &RunPlan, begun: Instant, watch: Watch, run: &mut dyn Run) -> Keep {
+        let watched = Series::new(watch, plan.watched.every, run);
         let fields = run.plane().series();
         let precision = plan.output.precision;
         let mut keep = Keep {
@@ -104,7 +101,7 @@ impl Keep {
         keep.frame(run);
         keep.schedule.plan(run);
         keep.watched.plan(run);
-        Ok(keep)
+        keep
     }
 
     fn frame(&mut self, run: &dyn Run) {
@@ -188,6 +185,8 @@ impl Kept {
             summary: &self.summary,
             case: [&self.case[0], &self.case[1]],
         };
-        contents.dataset(command).map_err(|problem| Error::invalid(Path::new("result"), problem))
+        contents
+            .dataset(history(SystemTime::now(), command))
+            .map_err(|problem| Error::invalid(Path::new("result"), problem))
     }
 }

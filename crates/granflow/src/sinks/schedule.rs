@@ -43,6 +43,11 @@ impl Schedule {
     pub fn next(&self) -> [f64; 2] {
         [self.next_frame, self.next_line]
     }
+    /// Time between two frames; infinite where steps are counted.
+    #[must_use]
+    pub fn every(&self) -> f64 {
+        self.interval().unwrap_or(f64::INFINITY)
+    }
     /// Go on with these.
     pub fn resume(&mut self, [frame, line]: [f64; 2]) {
         (self.next_frame, self.next_line) = (frame, line);

@@ -51,6 +51,11 @@ impl Series {
         [0, 1].map(|k| used[k].then(|| directory.join(FILES[k].0)))
     }
 
+    /// The path that the case names.
+    pub fn path(&self) -> Option<Vec<[f64; 2]>> {
+        self.watch.path.clone()
+    }
+
     /// Begin the files.
     pub fn create(&self, directory: &Path) -> Result<[Option<Lines>; 2], Error> {
         self.opened(directory, |k, path| Lines::create(path, FILES[k].1))
@@ -74,6 +79,11 @@ impl Series {
     /// The next instant at which it wants to look; infinite where it looks after every step, or at nothing.
     pub fn next(&self) -> f64 {
         self.next
+    }
+
+    /// Time between two looks; infinite where it looks after every step.
+    pub fn every(&self) -> f64 {
+        self.every.unwrap_or(f64::INFINITY)
     }
 
     /// Go on with this instant, the last lines being those of `time`.

@@ -250,10 +250,11 @@ fn a_run_ends_within_a_step_of_many_frames_and_goes_on_to_the_same_bits() {
     let mut run = case.check().unwrap().start().unwrap();
     let plan = case.check().unwrap().plan().clone();
     let stop = AtomicBool::new(false);
+    let inputs = granflow::Inputs::default();
+    let watch = granflow::watch::Watch::of(&plan, &inputs, &*run).unwrap();
     let lock = Folder::take(&parts).unwrap();
     let mut files =
-        Files::begin(lock, &plan, origin(&plan, &granflow::Inputs::default()).unwrap(), "test", &mut *run)
-            .unwrap();
+        Files::begin(lock, &plan, origin(&plan, &inputs).unwrap(), "test", watch, &mut *run).unwrap();
     let mut counted = Counted { stop: &stop, instants: 0, every: 1e-3 };
     let sinks: &mut [&mut dyn Sink] = &mut [&mut Stop(&stop), &mut files, &mut counted];
     let reason = drive(&mut *run, &plan.ends, sinks).unwrap();

@@ -43,9 +43,11 @@ pub enum Extent {
     Raster(PathBuf),
     /// A parabolic cap.
     Cap(Cap),
+    /// What lies at the end of another run, in its result.nc.
+    Result(PathBuf),
 }
 
-/// Mass that is released: exactly one of `polygons`, `raster`, `cap`.
+/// Mass that is released: exactly one of `polygons`, `raster`, `cap`, `result`.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 #[schemars(rename = "Release")]
@@ -59,6 +61,9 @@ pub(super) struct Words {
     /// A parabolic cap.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub cap: Option<Cap>,
+    /// What lies at the end of another run on terrain: its folder, or its result.nc.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub result: Option<PathBuf>,
     /// Thickness in the polygons: metres, { attribute = "name" }, or { features = [1.2, 0.8] } with one for each feature.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub thickness: Option<Thickness>,
@@ -194,8 +199,8 @@ impl Words {
     pub fn check(&self, look: &Look, key: &str) -> Result<Release, CaseError> {
         let thickness_key = format!("{key}.thickness");
         let (measured, starts) = (self.measured, self.starts(look, key)?);
-        let extent = match (&self.polygons, &self.raster, &self.cap) {
-            (Some(path), None, None) => {
+        let extent = match (&self.polygons, &self.raster, &self.cap, self.stored()) {
+            (Some(path), None, None, None) => {
                 let Some(thickness) = self.thickness.clone() else {
                     return Err(look.fault(
                         &thickness_key,
@@ -210,12 +215,13 @@ impl Words {
                     starts,
                 });
             }
-            (None, Some(path), None) => Extent::Raster(look.locate(path)),
-            (None, None, Some(cap)) => Extent::Cap(cap.clone()),
+            (None, Some(path), None, None) => Extent::Raster(look.locate(path)),
+            (None, None, Some(cap), None) => Extent::Cap(cap.clone()),
+            (None, None, None, Some(path)) => Extent::Result(look.locate(&path)),
             _ => {
                 return Err(look.fault(
                     key,
-                    "a release has exactly one of polygons, raster, cap",
+                    "a release has exactly one of polygons, raster, cap, result",
                     "split it into several [[release]] tables, or remove what is too much",
                 ));
             }
@@ -224,7 +230,14 @@ impl Words {
             return Err(look.fault(
                 &thickness_key,
                 "`thickness` belongs to polygons",
-                "remove it: a raster or a cap has its own thickness",
+                "remove it: a raster, a cap or a result has its own thickness",
+            ));
+        }
+        if self.result.is_some() && measured == Measured::Vertical {
+            return Err(look.fault(
+                &format!("{key}.measured"),
+                "`measured` has no meaning for a result",
+                "remove it: the result knows its own slopes",
             ));
         }
         if let Extent::Cap(cap) = &extent {
@@ -235,6 +248,16 @@ impl Words {
             }
         }
         Ok(Release { extent, measured, starts })
+    }
+
+    /// The result.nc of another run.
+    fn stored(&self) -> Option<PathBuf> {
+        let path = self.result.as_ref()?;
+        Some(if path.extension().is_some_and(|ending| ending == "nc") {
+            path.clone()
+        } else {
+            path.join("result.nc")
+        })
     }
 
     fn starts(&self, look: &Look, key: &str) -> Result<Starts, CaseError> {
@@ -255,7 +278,8 @@ impl Words {
 
     /// The files must exist.
     pub fn check_files(&self, look: &Look, key: &str) -> Result<(), CaseError> {
-        for (name, path) in [("polygons", &self.polygons), ("raster", &self.raster)] {
+        let stored = self.stored();
+        for (name, path) in [("polygons", &self.polygons), ("raster", &self.raster), ("result", &stored)] {
             path.iter().try_for_each(|path| look.file(&format!("{key}.{name}"), path))?;
         }
         Ok(())

@@ -1,6 +1,6 @@
 //! The figures of a run on a chute: profiles and space-time in one dimension, the plane in two; the animation.
 
-use crate::model::{Drawing, Line, PILE, Scene, View, history, profiles};
+use crate::model::{Drawing, Line, PILE, Scene, View, history, profiles, watched};
 use crate::output::figures::{
     Axis, Colours, Curve, Figure, FigureError, Fill, Frame, HeatMap, Picture, Profiles, Style, Surface, short,
 };
@@ -66,8 +66,33 @@ pub(super) fn line<'a>(view: &'a View<'a>) -> Vec<Drawing<'a>> {
             .draw()
         }),
     ];
+    drawings.extend(durations(view));
+    drawings.extend(watched(view));
     drawings.extend(history(view));
     drawings
+}
+
+/// For how long thresholds were exceeded, along x.
+fn durations<'a>(view: &'a View<'a>) -> Option<Drawing<'a>> {
+    let named = |(name, label)| Some((label, view.map(name)?));
+    let maps = [("duration_thickness", "above the thickness"), ("duration_speed", "above the speed")];
+    let maps: Vec<(&str, &[f64])> = maps.into_iter().filter_map(named).collect();
+    if maps.is_empty() {
+        return None;
+    }
+    let caption = "For how long the thickness and the speed were above the thresholds of output.durations.";
+    Some(Drawing::new("durations", caption, move || {
+        let curve = |&(name, y): &(&'a str, &'a [f64])| Curve { name, x: &view.x, y, ..Default::default() };
+        Profiles {
+            title: &view.title,
+            subtitle: &view.subtitle,
+            x: Axis::new("x", ""),
+            y: Axis::new("time above", ""),
+            curves: &maps.iter().map(curve).collect::<Vec<_>>(),
+            ..Default::default()
+        }
+        .draw()
+    }))
 }
 
 /// The part of a plane that the mass ever covered, with a margin.
@@ -159,6 +184,7 @@ pub(super) fn plane<'a>(view: &'a View<'a>) -> Vec<Drawing<'a>> {
             .draw()
         }));
     }
+    drawings.extend(watched(view));
     drawings.extend(history(view));
     drawings
 }

@@ -2,10 +2,11 @@
 
 use super::path::{PathLine, path};
 use super::terrain::TerrainDomain;
-use crate::model::{Drawing, Instants, Scene, View, colour_limit, history};
+use crate::model::{Drawing, Instants, Scene, View, colour_limit, history, watched};
 use crate::output;
 use crate::output::figures::{
-    Axis, Colours, Extent, Figure, FigureError, Map, Outline, Overlay, Picture, Relief, Section, short,
+    Axis, Colours, Extent, Figure, FigureError, Frame, HeatMap, Map, Outline, Overlay, Picture, Relief,
+    Section, short,
 };
 use crate::output::outlines::{Lattice, contour, rings};
 use crate::output::style::Style;
@@ -217,8 +218,41 @@ pub(super) fn figures<'a>(view: &'a View<'a>, terrain: &'a TerrainDomain) -> Vec
     {
         drawings.push(section(view, ground, [deposit, peak, speed]));
     }
+    drawings.extend(range_time(view));
+    drawings.extend(watched(view));
     drawings.extend(history(view));
     drawings
+}
+
+/// What passed along the path, over time.
+fn range_time<'a>(view: &'a View<'a>) -> Vec<Drawing<'a>> {
+    let Some(along) = &view.along else { return Vec::new() };
+    let drawing = |(name, label, unit, values, colours): (_, &'static str, _, &'a [f64], _)| {
+        let what = format!("largest {label} within {} m of the path", short(0.5 * along.width));
+        let caption = format!(
+            "The {what} at every instant of the series: time from left to right, distance from the begin of the path upwards; white \
+             where nothing is thicker than the threshold."
+        );
+        Drawing::new(name, caption, move || {
+            HeatMap {
+                title: &view.title,
+                subtitle: &format!("{what}; {}", view.subtitle),
+                frame: Frame::TimeSpace,
+                x: Axis::new("time t", view.unit("s")),
+                y: Axis::new("distance along the path", "m"),
+                xs: &along.times,
+                ys: &along.distance,
+                values,
+                quantity: Axis::new(label, unit),
+                colours,
+                ..Default::default()
+            }
+            .draw()
+        })
+    };
+    let thickness = ("range_time", "thickness", "m", &along.thickness[..], Colours::Thickness);
+    let speed = ("range_time_speed", "speed", "m/s", &along.speed[..], Colours::Speed);
+    vec![drawing(thickness), drawing(speed)]
 }
 
 /// The map of a layer.

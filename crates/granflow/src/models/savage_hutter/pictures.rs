@@ -7,12 +7,6 @@ use std::sync::Arc;
 
 #[cfg(feature = "geo")]
 use super::{maps, terrain::TerrainDomain};
-#[cfg(feature = "geo")]
-use crate::{
-    raster::{Crs, Raster},
-    release::Sparse,
-    terrain::Curvature,
-};
 
 #[derive(Debug)]
 pub(super) struct Avalanche;
@@ -96,64 +90,5 @@ fn terrain(_file: &ResultFile, _centres: [&[f64]; 2]) -> Result<Arc<dyn Domain>,
 
 #[cfg(feature = "geo")]
 fn terrain(file: &ResultFile, centres: [&[f64]; 2]) -> Result<Arc<dyn Domain>, String> {
-    Ok(Arc::new(TerrainDomain {
-        raster: Arc::new(Raster { crs: crs(file), ..raster(centres, file.whole("bed")?)? }),
-        release: Arc::new(Sparse::of(file.first("thickness", 2)?)),
-        inlets: Arc::default(),
-        density: f64::NAN,
-        threshold: threshold(&file.text("threshold")),
-        curvature: curvature(&file.text("curvature")),
-        remarks: Vec::new(),
-    }))
-}
-
-/// The threshold \[m\] of a file, from its attribute, as in "0.01 m"; the usual one where it has none.
-#[cfg(feature = "geo")]
-fn threshold(attribute: &str) -> f64 {
-    let number = attribute.split_whitespace().next().and_then(|number| number.parse().ok());
-    number.unwrap_or(granflow_case::terrain::THRESHOLD)
-}
-
-/// The coordinate reference system of a file.
-#[cfg(feature = "geo")]
-fn crs(file: &ResultFile) -> Option<Crs> {
-    let text = |name: &str| Some(file.attribute("crs", name)).filter(|text| !text.is_empty());
-    let crs = |text: String| Crs::parse(&text).ok();
-    let code = text("epsg_code").and_then(crs);
-    let known = text("crs_wkt").and_then(crs);
-    match (code, known) {
-        (Some(code), Some(known)) => Some(Crs { epsg: code.epsg, ..known }),
-        (code, known) => code.or(known),
-    }
-}
-
-/// The length over which the slope of the bed is taken, from its attribute, as in "20 m" or "off"; the usual one where a file
-/// has none.
-#[cfg(feature = "geo")]
-fn curvature(attribute: &str) -> Curvature {
-    let number = attribute.split_whitespace().next().and_then(|number| number.parse().ok());
-    match (attribute, number) {
-        ("off", _) => Curvature::Off,
-        (_, length) => Curvature::Length(length.unwrap_or(granflow_case::terrain::CURVATURE)),
-    }
-}
-
-/// The bed on the cells with these centres.
-#[cfg(feature = "geo")]
-fn raster([x, y]: [&[f64]; 2], values: Vec<f64>) -> Result<Raster, String> {
-    let [Some(cell), Some(rows)] = [x, y].map(|c| c.get(1).map(|second| second - c[0])) else {
-        return Err("its bed has fewer than two cells along an axis".to_owned());
-    };
-    if values.len() != x.len() * y.len() || cell <= 0.0 || rows <= 0.0 {
-        return Err("its bed does not fit its coordinates".to_owned());
-    }
-    Ok(Raster {
-        columns: x.len(),
-        rows: y.len(),
-        west: x[0] - 0.5 * cell,
-        south: y[0] - 0.5 * cell,
-        cell,
-        values,
-        crs: None,
-    })
+    Ok(Arc::new(super::stored::domain(file, centres)?))
 }

@@ -11,6 +11,8 @@ pub mod flowing;
 #[cfg(feature = "geo")]
 mod forest;
 #[cfg(feature = "geo")]
+mod left;
+#[cfg(feature = "geo")]
 pub(crate) mod mountain;
 #[cfg(feature = "geo")]
 mod parameters;

@@ -1,3 +1,4 @@
+use super::super::inputs::Input;
 use super::*;
 use std::fs;
 
@@ -7,8 +8,9 @@ const MARKS: Marks = Marks {
     series: [Mark { count: 7, crc: 2 }, Mark { count: 0, crc: 0 }],
 };
 
-fn origin(case: &str, crc: u32) -> Origin {
-    Origin { case: case_hash(case), inputs: vec![Input { name: "dem.asc".into(), bytes: 7, crc }] }
+fn origin(title: &str, crc: u32) -> Origin {
+    let case = format!("model = \"{title}\"");
+    Origin { case, inputs: vec![Input { name: "dem.asc".into(), bytes: 7, crc }] }
 }
 
 fn double(values: impl IntoIterator<Item = f64>) -> Numbers<'static> {
@@ -18,6 +20,7 @@ fn double(values: impl IntoIterator<Item = f64>) -> Numbers<'static> {
 fn sample() -> Checkpoint<'static> {
     Checkpoint {
         origin: origin("x", 9),
+        past: Past { commands: vec!["run".into()], events: vec!["went on".into()], mixed: true },
         ended: None,
         step: u64::MAX,
         time: 0.1 + 0.2,
@@ -37,8 +40,9 @@ fn every_bit_comes_back() {
     let path = folder.path().join("checkpoint/state");
     let written = sample();
     written.write(&path, MARKS).unwrap();
-    let (mut read, marks) = Checkpoint::read(&path, &written.origin).unwrap();
+    let (mut read, marks, changes) = Checkpoint::read(&path, &written.origin).unwrap();
     assert_eq!((marks, read.ended, &read.origin), (MARKS, None, &written.origin));
+    assert_eq!((&read.past, changes), (&written.past, Vec::new()));
     let bytes = |numbers: Option<&Numbers>| {
         let mut bytes = Vec::new();
         numbers.unwrap().encode(&mut bytes);

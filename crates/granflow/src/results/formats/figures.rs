@@ -11,6 +11,9 @@ pub(super) static FIGURES: Format = Format {
     write: |work| {
         let Some(story) = &work.story else { return Ok(Vec::new()) };
         let figures = story.draw(&work.run.figures())?;
+        if let Some(along) = &story.view.along {
+            along.write(&work.run.directory.join("range_time.csv"))?;
+        }
         Ok(work.figures.get_or_init(|| figures).iter().map(|figure| figure.path.clone()).collect())
     },
 };

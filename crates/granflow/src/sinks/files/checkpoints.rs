@@ -1,8 +1,9 @@
 //! A run on disk: what of it goes into `checkpoint/state.bin`, and back.
 
 use super::BeginError;
-use crate::output::checkpoint::{Checkpoint, Marks, Numbers, Origin};
+use crate::output::checkpoint::{Checkpoint, Marks, Numbers, Origin, Past};
 use crate::run::{Record, Run, Saved, StopReason};
+use granflow_case::Change;
 use std::borrow::Cow;
 use std::path::{Path, PathBuf};
 
@@ -11,11 +12,25 @@ pub(super) fn file_in(directory: &Path) -> PathBuf {
     directory.join("checkpoint").join("state.bin")
 }
 
-/// The run as it stands; `due` are the times of the next frame, line and look at gauges and sections, `ended` says why it goes no further.
+/// The checkpoint that a run which ended by time goes on from to a later end: the last one before the step that the end cut.
+pub(super) fn before_end_in(directory: &Path) -> PathBuf {
+    directory.join("checkpoint").join("before_end.bin")
+}
+
+/// When what is written beside the checkpoints comes next.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Due {
+    /// Times of the next frame, line and look at gauges and sections.
+    pub next: [f64; 3],
+    /// Times between two frames, and between two looks; infinite where there is none.
+    pub every: [f64; 2],
+}
+
+/// The run as it stands; `ended` says why it goes no further.
 pub(super) fn of<'a>(
     run: &'a dyn Run,
-    origin: &Origin,
-    due: [f64; 3],
+    (origin, past): (&Origin, &Past),
+    due: Due,
     ended: Option<StopReason>,
 ) -> Checkpoint<'a> {
     let Saved { cells, clock, state, maps, at_rest, drift, model, passed, durations, record } = run.save();
@@ -24,9 +39,11 @@ pub(super) fn of<'a>(
         ("peak_energy".into(), record.peak_energy),
         ("flowed".into(), record.flowed),
         ("initial".into(), record.initial),
-        ("next_frame".into(), due[0]),
-        ("next_line".into(), due[1]),
-        ("next_series".into(), due[2]),
+        ("next_frame".into(), due.next[0]),
+        ("next_line".into(), due.next[1]),
+        ("next_series".into(), due.next[2]),
+        ("every_frame".into(), due.every[0]),
+        ("every_series".into(), due.every[1]),
         ("at_rest".into(), f64::from(u8::from(at_rest))),
         ("columns".into(), cells[0] as f64),
         ("rows".into(), cells[1] as f64),
@@ -41,24 +58,31 @@ pub(super) fn of<'a>(
     arrays.extend(maps.into_iter().map(|(name, map)| (name.to_owned(), Numbers::Single(map))));
     let durations = durations.into_iter().enumerate();
     arrays.extend(durations.map(|(k, part)| (format!("duration_{k}"), Numbers::Double(part))));
-    Checkpoint { origin: origin.clone(), ended, step: run.steps(), time: run.time(), scalars, arrays }
+    let (origin, past) = (origin.clone(), past.clone());
+    Checkpoint { origin, past, ended, step: run.steps(), time: run.time(), scalars, arrays }
 }
 
-/// What a checkpoint holds.
+/// What a checkpoint holds beside the run.
 pub(super) struct Taken {
-    /// The run.
-    pub saved: Saved<'static>,
-    /// Times of the next frame, line and look at gauges and sections.
-    pub due: [f64; 3],
+    /// When what is written beside it comes next.
+    pub due: Due,
     /// How far the files beside it had come.
     pub marks: Marks,
     /// Why the run had ended, if it had.
     pub ended: Option<StopReason>,
+    /// What changes in the case.
+    pub changes: Vec<Change>,
+    /// How it came to where it stands.
+    pub past: Past,
 }
 
-/// Read a checkpoint of the case for a run of the same kind.
-pub(super) fn read(path: &Path, origin: &Origin, run: &dyn Run) -> Result<Taken, BeginError> {
-    let (mut saved, marks) = Checkpoint::read(path, origin)?;
+/// Read a checkpoint that a run of the same kind goes on from with this origin.
+pub(super) fn read(
+    path: &Path,
+    origin: &Origin,
+    run: &dyn Run,
+) -> Result<(Saved<'static>, Taken), BeginError> {
+    let (mut saved, marks, changes) = Checkpoint::read(path, origin)?;
     let scalar = |name: &str| saved.scalar(name).unwrap_or(0.0);
     let list = |name: &str| (0..).map_while(|k| saved.scalar(&format!("{name}_{k}"))).collect::<Vec<f64>>();
     let now = run.save();
@@ -69,7 +93,10 @@ pub(super) fn read(path: &Path, origin: &Origin, run: &dyn Run) -> Result<Taken,
         flowed: scalar("flowed"),
         ..*run.record()
     };
-    let due = ["next_frame", "next_line", "next_series"].map(scalar);
+    let due = Due {
+        next: ["next_frame", "next_line", "next_series"].map(scalar),
+        every: ["every_frame", "every_series"].map(scalar),
+    };
     let cells = ["columns", "rows"].map(|name| scalar(name) as usize);
     let at_rest = scalar("at_rest") == 1.0;
     let (clock, drift, model) = (list("clock"), list("drift"), list("model"));
@@ -80,7 +107,7 @@ pub(super) fn read(path: &Path, origin: &Origin, run: &dyn Run) -> Result<Taken,
     let durations = (0..).map_while(|k| saved.take(&format!("duration_{k}"))).map(Cow::Owned).collect();
     let single = |values: Vec<f64>| Cow::Owned(values.into_iter().map(|value| value as f32).collect());
     let maps = names.into_iter().filter_map(|name| Some((name, single(saved.take(name)?)))).collect();
-    let ended = saved.ended;
+    let (ended, past) = (saved.ended, std::mem::take(&mut saved.past));
     let saved = Saved { cells, clock, state, maps, at_rest, drift, model, passed, durations, record };
-    Ok(Taken { saved, due, marks, ended })
+    Ok((saved, Taken { due, marks, ended, changes, past }))
 }

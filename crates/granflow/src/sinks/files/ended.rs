@@ -1,4 +1,4 @@
-//! A finished run that is to go on: are its files whole, and if not, can they be made again?
+//! A finished run that is taken up: are its files whole, and if not, can they be made again?
 //!
 //! Its frames are removed with its end, but `result.nc` holds them. With them and the checkpoint before its end the run ends
 //! once more, which makes every file anew.
@@ -14,26 +14,84 @@ use crate::run::{Run, StopReason};
 use granflow_case::RunPlan;
 use std::path::Path;
 
-/// Put the frames back where files of a finished run are lost, and say which; that all are whole is an error as well, for
-/// there is nothing to do then.
-pub(super) fn taken_up(
-    folder: &Folder,
-    plan: &RunPlan,
-    run: &dyn Run,
+/// What a run that has ended left.
+pub(super) struct Left {
     reason: StopReason,
-    mark: Mark,
-) -> Result<String, BeginError> {
-    let directory = folder.path().to_owned();
-    let (files, lost) = folder.lost()?;
-    if lost.is_empty() {
-        let summary = Box::new(Summary::read(&directory.join("summary.json"))?);
-        return Err(BeginError::Ended { directory, files, summary });
+    /// How many files.
+    files: usize,
+    /// What became of those that are not as it left them, in words; empty where all are.
+    lost: String,
+}
+
+impl Left {
+    /// What the run in a folder left, which ended by `reason` and whose frames are not kept any more.
+    pub fn of(folder: &Folder, reason: StopReason) -> Result<Left, output::Error> {
+        let (files, lost) = folder.lost()?;
+        Ok(Left { reason, files, lost: lost.join(", ") })
     }
-    let lost = lost.join(", ");
-    match frames(&directory, run, plan.output.precision, mark) {
-        Ok(()) => Ok(format!("{lost}: all files are made again, from result.nc and the checkpoint")),
-        Err(Refused::Disk(error)) => Err(error.into()),
-        Err(Refused::Result(problem)) => Err(BeginError::Lost { directory, reason, lost, problem }),
+
+    /// All files are as it left them.
+    pub fn is_whole(&self) -> bool {
+        self.lost.is_empty()
+    }
+
+    /// That nothing is left to do for a run that is over by `reason`: an error as well. Where files are lost it says how they are
+    /// made again.
+    pub fn over(&self, directory: &Path, reason: StopReason) -> BeginError {
+        let directory = directory.to_owned();
+        if !self.is_whole() {
+            let problem = format!(
+                "this run has ended ({reason}), {}; but {}, which --resume with the case as it was makes again",
+                nothing_left(reason),
+                self.lost
+            );
+            return BeginError::Resume { directory, problem };
+        }
+        match Summary::read(&directory.join("summary.json")) {
+            Ok(summary) => {
+                let summary = Box::new(Summary { stop_reason: reason, ..summary });
+                BeginError::Ended { directory, files: self.files, summary }
+            }
+            Err(error) => error.into(),
+        }
+    }
+
+    /// Put the frames back up to the mark of a checkpoint.
+    pub fn put_back(
+        &self,
+        directory: &Path,
+        plan: &RunPlan,
+        run: &dyn Run,
+        mark: Mark,
+    ) -> Result<(), BeginError> {
+        let directory = directory.to_owned();
+        frames(&directory, run, plan.output.precision, mark).map_err(|refused| match refused {
+            Refused::Disk(error) => error.into(),
+            Refused::Result(problem) if self.is_whole() => BeginError::Resume { directory, problem },
+            Refused::Result(problem) => {
+                BeginError::Lost { directory, reason: self.reason, lost: self.lost.clone(), problem }
+            }
+        })
+    }
+
+    /// What is done about lost files, if there are some; where the run goes on it makes all files at its new end.
+    pub fn notice(&self, goes_on: bool) -> Option<String> {
+        let done = match goes_on {
+            true => "all files are made anew when this run ends",
+            false => "all files are made again, from result.nc and the checkpoint",
+        };
+        (!self.is_whole()).then(|| format!("{}: {done}", self.lost))
+    }
+}
+
+/// Why there is nothing left to do for a run that ended so.
+pub(super) fn nothing_left(reason: StopReason) -> &'static str {
+    match reason {
+        StopReason::AtRest => {
+            "whatever the end nothing will move again, unless --set changes friction or forest"
+        }
+        StopReason::EndTime => "there is nothing to go on with; --set time.end=... goes on to a later end",
+        _ => "there is nothing to go on with",
     }
 }
 

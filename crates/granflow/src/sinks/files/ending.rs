@@ -21,6 +21,9 @@ pub(super) struct Ending {
     plane: Plane,
     maps: Maps,
     series: [Option<PathBuf>; 2],
+    path: Option<Vec<[f64; 2]>>,
+    path_width: f64,
+    history: Vec<String>,
     summary: Summary,
 }
 
@@ -45,6 +48,7 @@ impl Ending {
     }
 
     fn with(files: &Files, plane: Plane, maps: Maps, summary: Summary) -> Ending {
+        let past = files.past_and_now();
         Ending {
             directory: files.folder.path().to_owned(),
             files: files.plan.output.files.clone(),
@@ -53,6 +57,9 @@ impl Ending {
             plane,
             maps,
             series: files.series.paths(files.folder.path()),
+            path: files.series.path(),
+            path_width: files.plan.output.path_width,
+            history: past.commands.into_iter().chain(past.events).collect(),
             summary,
         }
     }
@@ -64,12 +71,41 @@ impl Ending {
 
     /// Put it together; `folder` keeps its lock for as long as files are made.
     pub fn finished(self, folder: Option<Folder>, frames: Frames, ledger: Vec<Entry>) -> Finished {
-        let Ending { directory, files, case, case_text, plane, mut maps, series, mut summary } = self;
+        let Ending {
+            directory,
+            files,
+            case,
+            case_text,
+            plane,
+            mut maps,
+            series,
+            path,
+            path_width,
+            history,
+            mut summary,
+        } = self;
         numbers::complete(&plane, &mut maps, &mut summary);
-        Finished { directory, folder, files, case, case_text, plane, frames, ledger, maps, series, summary }
+        Finished {
+            directory,
+            folder,
+            files,
+            case,
+            case_text,
+            plane,
+            frames,
+            ledger,
+            maps,
+            series,
+            path,
+            path_width,
+            history,
+            summary,
+        }
     }
 }
 
 fn summary(files: &Files, run: &dyn Run, reason: StopReason) -> Summary {
-    numbers::summary(&files.plan, run, reason, files.start)
+    let mut summary = numbers::summary(&files.plan, run, reason, files.start);
+    numbers::went_on(&files.past, &mut summary);
+    summary
 }

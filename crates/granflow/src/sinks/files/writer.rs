@@ -5,6 +5,7 @@
 //! steps wait only while all are still to be written.
 
 use super::ending::Ending;
+use crate::output;
 use crate::output::checkpoint::{self, Checkpoint, Marks, Numbers};
 use crate::output::frames::Frames;
 use crate::output::ledger::{Entry, Ledger};
@@ -30,6 +31,7 @@ enum Order {
     Series([String; 2]),
     Frame { time: f64, bytes: usize },
     Checkpoint { head: Vec<u8>, bytes: usize },
+    Keep(PathBuf),
     Piece(Vec<u8>),
     Join(Box<Ending>),
 }
@@ -48,13 +50,12 @@ pub(super) struct Writer {
 }
 
 impl Writer {
-    /// Start the thread; it appends to these, saves checkpoints under this name, and tells `result.nc` the command.
+    /// Start the thread; it appends to these and saves checkpoints under this name.
     pub fn start(
         frames: Frames,
         ledger: Ledger,
         series: [Option<Lines>; 2],
         checkpoint: PathBuf,
-        command: String,
     ) -> io::Result<Writer> {
         let (orders, given) = sync_channel(PIECES);
         let (free, written) = channel();
@@ -62,7 +63,7 @@ impl Writer {
         let (save_costs, saved) = channel();
         let precision = frames.precision();
         let lengths = frames.fields().iter().map(|field| field.length).collect();
-        let desk = Desk { frames, ledger, series, checkpoint, command, given, free, costs, save_costs };
+        let desk = Desk { frames, ledger, series, checkpoint, given, free, costs, save_costs };
         let thread = Builder::new().name("granflow-writer".to_owned()).spawn(|| desk.work())?;
         let (orders, thread) = (Some(orders), Some(thread));
         Ok(Writer { precision, lengths, orders, written, made: 0, joined, saved, thread })
@@ -106,6 +107,11 @@ impl Writer {
         let head = checkpoint.head();
         self.send(Order::Checkpoint { head, bytes })?;
         self.pieces(&parts, Numbers::encode)
+    }
+
+    /// Keep the last checkpoint under this name too, before the next takes its place.
+    pub fn keep(&mut self, name: PathBuf) -> Result<(), Error> {
+        self.send(Order::Keep(name))
     }
 
     /// Join what there is into `result.nc`; see [`Writer::joined`].
@@ -204,7 +210,6 @@ struct Desk {
     ledger: Ledger,
     series: [Option<Lines>; 2],
     checkpoint: PathBuf,
-    command: String,
     given: Receiver<Order>,
     free: Sender<Vec<u8>>,
     costs: Sender<f64>,
@@ -213,8 +218,7 @@ struct Desk {
 
 impl Desk {
     fn work(self) -> Result<(Frames, Ledger), Error> {
-        let Desk { mut frames, mut ledger, mut series, checkpoint, command, given, free, costs, save_costs } =
-            self;
+        let Desk { mut frames, mut ledger, mut series, checkpoint, given, free, costs, save_costs } = self;
         while let Ok(order) = given.recv() {
             let pass = |bytes, out: &mut dyn Write| pass(&given, &free, bytes, out);
             match order {
@@ -239,11 +243,10 @@ impl Desk {
                     checkpoint::write_from(&checkpoint, &head, marks, |out| pass(bytes, out))?;
                     let _ = save_costs.send(begin.elapsed().as_secs_f64()); // nobody asks at the end of a run
                 }
+                Order::Keep(name) => output::keep(&checkpoint, &name)?,
                 Order::Join(ending) => {
                     let begin = Instant::now();
-                    ending
-                        .finished(None, frames.again()?, ledger.entries().to_vec())
-                        .write_result(&command)?;
+                    ending.finished(None, frames.again()?, ledger.entries().to_vec()).write_result()?;
                     let _ = costs.send(begin.elapsed().as_secs_f64()); // nobody asks at the end of a run
                 }
                 Order::Piece(_) => unreachable!("a piece belongs to a frame or a checkpoint"),

@@ -5,7 +5,6 @@ use super::chute::{self, Part};
 use super::terrain::{self, Loaded};
 use crate::StartError;
 use crate::describe::{Line, axis, case, effort, range};
-#[cfg(feature = "geo")]
 use crate::inputs::Inputs;
 use crate::memory::{Size, fits};
 use crate::model::{At, Kind, Quantity};
@@ -25,7 +24,7 @@ use granflow_model::real::CompensatedSum;
 const FAST: f64 = 30.0;
 
 /// The lines about an avalanche on a chute.
-pub(crate) fn chute(run: &RunPlan, plan: &OnChute) -> Result<Vec<Line>, StartError> {
+pub(crate) fn chute(run: &RunPlan, plan: &OnChute, inputs: &Inputs) -> Result<Vec<Line>, StartError> {
     let order = if run.scheme.ends_with("_2") && !run.scheme.starts_with("verfahren") {
         "second order"
     } else {
@@ -35,7 +34,7 @@ pub(crate) fn chute(run: &RunPlan, plan: &OnChute) -> Result<Vec<Line>, StartErr
     lines.push(threshold(run, ""));
     let mass = Mass::of(plan);
     lines.extend(grid(plan, &mass));
-    lines.extend(start(run, &at_start(run, plan, &mass)?));
+    lines.extend(start(run, &at_start(run, plan, inputs, &mass)?));
     Ok(lines)
 }
 
@@ -55,7 +54,7 @@ pub(crate) fn terrain(run: &RunPlan, plan: &OnTerrain, inputs: &Inputs) -> Resul
     // Mass and pull are those of all releases together.
     loaded.start_all();
     let mut mountain = terrain::simulate(run, plan, loaded)?;
-    let mut begun = Start::of(run, &mut *mountain, READ, PICTURES[1], |_| true)?;
+    let mut begun = Start::of((run, inputs), &mut *mountain, READ, PICTURES[1], |_| true)?;
     begun.size.reading = reading;
     if let Some(entrainment) = &plan.entrainment {
         // The layer, what was taken of it, and the bed where it sinks.
@@ -97,13 +96,13 @@ impl Start {
     /// Of a run; `beside` are the bytes for each cell that set it up, `pictures` those of what is drawn. The pull is that of
     /// the cells whose numbers are `within`.
     fn of(
-        run: &RunPlan,
+        (run, inputs): (&RunPlan, &Inputs),
         start: &mut dyn Run,
         beside: f64,
         pictures: f64,
         within: impl Fn(usize) -> bool,
     ) -> Result<Start, StartError> {
-        let watch = Watch::of(run, start)?;
+        let watch = Watch::of(run, inputs, start)?;
         let pulls = start.stepper_mut().yield_ratios().into_iter().enumerate();
         let pull =
             pulls.filter(|(number, _)| within(*number)).fold(0.0, |most: f64, (_, pull)| most.max(pull));
@@ -140,15 +139,15 @@ const TOGETHER: usize = 1 << 18;
 
 /// The start of a run on a chute; of a large one part by part, each with a cell more on every side. At a wall or a periodic edge
 /// the pull is then that at an open one.
-fn at_start(run: &RunPlan, plan: &OnChute, mass: &Mass) -> Result<Start, StartError> {
+fn at_start(run: &RunPlan, plan: &OnChute, inputs: &Inputs, mass: &Mass) -> Result<Start, StartError> {
     let [columns, rows] = plan.grid.cells();
     let cells = columns * rows;
     // Where a gauge or a section lies only the whole can say.
     if cells <= TOGETHER || !run.watched.is_empty() {
-        return Start::of(run, &mut *chute::start(run, plan)?, 0.0, PICTURES[0], |_| true);
+        return Start::of((run, inputs), &mut *chute::start(run, plan)?, 0.0, PICTURES[0], |_| true);
     }
     let look = |part: Part, within: &dyn Fn(usize) -> bool| -> Result<Start, StartError> {
-        Start::of(run, &mut *chute::part(run, plan, part)?, 0.0, PICTURES[0], within)
+        Start::of((run, inputs), &mut *chute::part(run, plan, part)?, 0.0, PICTURES[0], within)
     };
     let few = look(Part { from: [0; 2], cells: [columns.min(3), rows.min(3)] }, &|_| true)?.size;
     fits(cells, few.setup as usize)?;

@@ -311,6 +311,10 @@ fn trim() {
 fn add(loaded: &mut Loaded, one: &Release, inputs: &Inputs, crs: Option<&Crs>) -> Result<(), StartError> {
     let bed = &loaded.terrain.bed;
     let (name, system, cells) = match &one.extent {
+        Extent::Result(path) => {
+            let (volume, system) = super::left::left_by(path, inputs, bed, &mut loaded.remarks)?;
+            (path.display().to_string(), Some(described(system.as_ref())), volume)
+        }
         Extent::Polygons { path, thickness } => {
             let thickness = match thickness {
                 Thickness::Constant(value) => release::Thickness::Value(*value),
@@ -339,6 +343,8 @@ fn add(loaded: &mut Loaded, one: &Release, inputs: &Inputs, crs: Option<&Crs>) -
         }
     };
     let measured = match one.measured {
+        // What a run left comes as its volume.
+        _ if matches!(one.extent, Extent::Result(_)) => release::Measured::Vertical,
         Measured::Normal => release::Measured::Normal,
         Measured::Vertical => release::Measured::Vertical,
     };

@@ -1,5 +1,5 @@
 use super::*;
-use crate::output::checkpoint::Origin;
+use crate::output::checkpoint::{Origin, Past};
 use crate::output::frames::Field;
 use std::borrow::Cow;
 use std::fs;
@@ -17,7 +17,7 @@ fn store(folder: &Path, precision: Precision) -> Frames {
 
 fn writer(folder: &Path, frames: Frames) -> Writer {
     let ledger = Ledger::create(&folder.join("mass.csv"), OUTLETS).unwrap();
-    Writer::start(frames, ledger, [None, None], folder.join("state.bin"), "test".to_owned()).unwrap()
+    Writer::start(frames, ledger, [None, None], folder.join("state.bin")).unwrap()
 }
 
 fn value(time: f64, field: usize, number: usize) -> f64 {
@@ -42,7 +42,15 @@ fn saved<'a>(step: u64, state: &'a [f64]) -> Checkpoint<'a> {
         ("map".to_owned(), Numbers::Single(Cow::Borrowed(&[0.1, 7.0]))),
     ];
     let scalars = vec![("peak".to_owned(), 0.1)];
-    Checkpoint { origin: Origin::default(), ended: None, step, time: 0.5, scalars, arrays }
+    Checkpoint {
+        origin: Origin::default(),
+        past: Past::default(),
+        ended: None,
+        step,
+        time: 0.5,
+        scalars,
+        arrays,
+    }
 }
 
 #[test]

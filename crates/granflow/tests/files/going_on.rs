@@ -1,0 +1,229 @@
+//! Finished runs that go on: to a later end, with other parameters, and not where the state stands on what differs.
+
+use super::*;
+
+fn with(case: &Path, overrides: &[&str]) -> Case {
+    let overrides: Vec<String> = overrides.iter().map(|&change| change.to_owned()).collect();
+    Case::read_with(case, &overrides).unwrap()
+}
+
+/// The case file of the slope with the ends that a test asks for.
+fn file(folder: &Path) -> PathBuf {
+    slope(folder, r#"["netcdf", "report"]"#);
+    folder.join("case.toml")
+}
+
+fn bytes(folder: &Path, name: &str) -> Vec<u8> {
+    fs::read(folder.join(name)).unwrap()
+}
+
+/// A run that its end cut goes on to a later one with the bits of the run to that.
+#[test]
+fn to_a_later_end_the_bits_are_those_of_the_unbroken_run() {
+    let folder = tempfile::tempdir().unwrap();
+    let case = file(folder.path());
+    let [whole, parts] = ["whole", "parts"].map(|name| folder.path().join(name));
+    let watch = r#"gauge=[{ name = "foot", at = [1075.0, 2110.0] }]"#;
+    let section = r#"section=[{ name = "toe", line = [[1000.0, 2110.0], [1150.0, 2110.0]] }]"#;
+    let ended = |end: &str| with(&case, &[end, "output.every=0.7", watch, section]);
+    let unbroken = begin(&ended("time.end=9.3"), &whole, false, &mut |_| false).unwrap().summary;
+    let first = begin(&ended("time.end=4.1"), &parts, false, &mut |_| false).unwrap().close().unwrap();
+    assert_eq!((first.stop_reason, first.time), (StopReason::EndTime, 4.1));
+    assert!(!parts.join("checkpoint/frames.bin").exists());
+
+    let went = begin(&ended("time.end=9.3"), &parts, true, &mut |_| false).unwrap();
+    assert_eq!((went.summary.steps, went.summary.time), (unbroken.steps, 9.3));
+    for name in ["mass.csv", "checkpoint/frames.bin", "gauges.csv", "sections.csv"] {
+        assert!(bytes(&whole, name) == bytes(&parts, name), "{name} differs");
+    }
+    let told: Vec<&str> = went.summary.texts("history").collect();
+    assert_eq!(told.len(), 1);
+    assert!(
+        told[0].ends_with("before the step that its end had cut: time.end = 9.3 instead of 4.1"),
+        "{told:?}"
+    );
+    assert!(!went.summary.warnings.iter().any(|warning| warning.contains("friction changed")));
+    let history = NcFile::open(parts.join("result.nc")).unwrap().global_attribute("history").unwrap().clone();
+    let history = history.value.as_string().unwrap();
+    assert!(
+        history.lines().filter(|line| line.ends_with("Z test")).count() == 2 && history.contains(told[0]),
+        "{history}"
+    );
+    assert!(fs::read_to_string(parts.join("report.html")).unwrap().contains("This run went on at time"));
+}
+
+/// An end that is not later, and a mass at rest, leave nothing to do.
+#[test]
+fn what_rests_or_has_reached_its_end_says_so() {
+    let folder = tempfile::tempdir().unwrap();
+    let case = file(folder.path());
+    let out = folder.path().join("out");
+    let again = |changes: &[&str]| match begin(&with(&case, changes), &out, true, &mut |_| false) {
+        Err(RunError::Begin(error @ BeginError::Ended { .. })) => error.to_string(),
+        other => panic!("{other:?}"),
+    };
+    begin(&with(&case, &["time.end=4.1"]), &out, false, &mut |_| false).unwrap().close().unwrap();
+    let before = bytes(&out, "mass.csv");
+    let earlier = again(&["time.end=4"]);
+    assert!(earlier.contains("--set time.end=... goes on to a later end"), "{earlier}");
+    assert!(bytes(&out, "mass.csv") == before);
+
+    begin(&with(&case, &[]), &out, true, &mut |_| false).unwrap().close().unwrap();
+    assert!(!out.join("checkpoint/before_end.bin").exists(), "no end has cut this run");
+    let rests = again(&["time.end=900"]);
+    assert!(
+        rests.contains("at rest") && rests.contains("whatever the end nothing will move again"),
+        "{rests}"
+    );
+}
+
+/// With less friction a deposit starts again; the run says that its parts differ.
+#[test]
+fn other_parameters_wake_what_rests() {
+    let folder = tempfile::tempdir().unwrap();
+    let case = file(folder.path());
+    let out = folder.path().join("out");
+    let first = begin(&with(&case, &[]), &out, false, &mut |_| false).unwrap();
+    let deposit = first.map("deposit").unwrap().to_vec();
+    let first = first.close().unwrap();
+    assert_eq!(first.stop_reason, StopReason::AtRest);
+
+    let held =
+        begin(&with(&case, &["material.friction.coulomb.mu=0.5"]), &out, true, &mut |_| false).unwrap();
+    assert_eq!(held.summary.stop_reason, StopReason::AtRest);
+    assert!(
+        held.map("deposit").unwrap().iter().zip(&deposit).all(|(new, old)| new.to_bits() == old.to_bits())
+    );
+    held.close().unwrap();
+
+    let less = ["material.friction.coulomb.mu=0.1", "time.end=400"];
+    let went = begin(&with(&case, &less), &out, true, &mut |_| false).unwrap();
+    let Summary { time, steps, ref warnings, .. } = went.summary;
+    assert!(time > first.time + 1.0 && steps > first.steps + 10, "{time} {steps}");
+    assert!(went.frames.times().contains(&first.time), "its state where it goes on is a frame");
+    assert!(warnings.iter().any(|warning| warning.contains("the friction changed")), "{warnings:?}");
+    let told: Vec<&str> = went.summary.texts("history").collect();
+    assert_eq!(told.len(), 2);
+    for part in
+        ["where it had ended (at rest)", "coulomb.mu = 0.1 instead of 0.5", "time.end = 400 instead of 200"]
+    {
+        assert!(told[1].contains(part), "{told:?}");
+    }
+    assert!(went.summary.mass_error.abs() < 1e-13);
+}
+
+/// A run that was interrupted after it went on is taken up as any other.
+#[test]
+fn a_run_that_went_on_can_be_interrupted_and_resumed() {
+    let folder = tempfile::tempdir().unwrap();
+    let case = file(folder.path());
+    let [whole, parts] = ["whole", "parts"].map(|name| folder.path().join(name));
+    let later = with(&case, &["time.end=30", "material.friction.coulomb.mu=0.3"]);
+    for out in [&whole, &parts] {
+        begin(&with(&case, &["time.end=4.1"]), out, false, &mut |_| false).unwrap().close().unwrap();
+    }
+    let unbroken = begin(&later, &whole, true, &mut |_| false).unwrap().summary;
+    let broken = begin(&later, &parts, true, &mut |run| run.time() > 7.0).unwrap().summary;
+    assert_eq!(broken.stop_reason, StopReason::Interrupted);
+    let resumed = begin(&later, &parts, true, &mut |_| false).unwrap().summary;
+    assert_eq!((resumed.steps, resumed.time), (unbroken.steps, unbroken.time));
+    assert_eq!(resumed.extra.get("history"), unbroken.extra.get("history"));
+    for name in ["mass.csv", "checkpoint/frames.bin"] {
+        assert!(bytes(&whole, name) == bytes(&parts, name), "{name} differs");
+    }
+}
+
+/// What the state stands on is named where it differs, and nothing is touched.
+#[test]
+fn what_a_run_stands_on_may_not_change() {
+    let folder = tempfile::tempdir().unwrap();
+    let case = file(folder.path());
+    let out = folder.path().join("out");
+    begin(&with(&case, &["time.end=4.1"]), &out, false, &mut |_| false).unwrap().close().unwrap();
+    let kept = bytes(&out, "result.nc");
+    for change in [
+        "terrain.cell=10",
+        "terrain.curvature={ length = 20.0 }",
+        "release.0.cap.height=3",
+        "release.0.measured=vertical",
+        "scheme.name=energy_stable",
+        "scheme.film=1e-3",
+        "material.density=400",
+        "material.gravity=9",
+        "output.threshold=0.1",
+        "output.durations={ thickness = 0.5 }",
+        "output.precision=f32",
+        r#"gauge=[{ name = "foot", at = [1075.0, 2110.0] }]"#,
+    ] {
+        let refused =
+            begin(&with(&case, &[change, "time.end=9"]), &out, true, &mut |_| false).unwrap_err().to_string();
+        let key = change.split('=').next().unwrap().replace(".0", "[0]");
+        assert!(refused.contains(&format!("another case: {key}")), "{change}: {refused}");
+        assert!(refused.contains("start again without --resume"), "{refused}");
+    }
+    assert!(bytes(&out, "result.nc") == kept && !out.join("checkpoint/frames.bin").exists());
+}
+
+/// What a run left lies on the mountain of the next one, with its volume, and stays where it held.
+#[test]
+fn a_deposit_is_a_release_of_a_next_run() {
+    let folder = tempfile::tempdir().unwrap();
+    let case = file(folder.path());
+    let out = folder.path().join("out");
+    let first = begin(&with(&case, &[]), &out, false, &mut |_| false).unwrap();
+    let (volume, deposit) = (first.summary.mass_final, first.map("deposit").unwrap().to_vec());
+    drop(first.close().unwrap());
+    let mut number = 0;
+    let mut next = |release: &str, changes: &[&str]| {
+        number += 1;
+        let release = format!("release=[{release}]");
+        let changes: Vec<&str> = [release.as_str()].iter().chain(changes).copied().collect();
+        begin(&with(&case, &changes), &folder.path().join(format!("next{number}")), false, &mut |_| false)
+            .unwrap()
+    };
+    for named in [r#"{ result = "out" }"#, r#"{ result = "out/result.nc" }"#] {
+        let same = next(named, &[]);
+        let share = same.summary.mass_initial / volume - 1.0;
+        assert!(share.abs() < 1e-14, "{share:e}");
+        assert_eq!(same.summary.stop_reason, StopReason::AtRest);
+        let left = same.map("deposit").unwrap();
+        let moved = left.iter().zip(&deposit).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
+        assert!(moved < 1e-12, "{moved}");
+    }
+    // Cells of another size have the same volume.
+    let coarse = next(r#"{ result = "out" }"#, &["terrain.cell=10"]);
+    assert!((coarse.summary.mass_initial / volume - 1.0).abs() < 1e-12);
+    // A second avalanche runs upon it.
+    let cap = "{ cap = { height = 2.0, centre = [1075.0, 2230.0], radius = 25.0 } }";
+    let both = next(&format!(r#"{{ result = "out" }}, {cap}"#), &[]);
+    let alone = next(cap, &[]);
+    assert!((both.summary.mass_initial - volume - alone.summary.mass_initial).abs() < 1e-9 * volume);
+    assert!(both.summary.max_speed > 1.0 && both.summary.mass_error.abs() < 1e-13);
+}
+
+#[test]
+fn a_result_that_is_no_mountain_is_no_release() {
+    let folder = tempfile::tempdir().unwrap();
+    let chute = r#"
+        grid.x = { from = -6.0, to = 6.0, cells = 60 }
+        material.friction.coulomb = { angle = "18 deg" }
+        initial.thickness.cap = { height = 1.0, radius = 2.0 }
+        time.steps = 3
+        output.files = ["netcdf"]
+        "#;
+    begin(&super::case(chute, folder.path()), &folder.path().join("out"), false, &mut |_| false).unwrap();
+    let case = file(folder.path());
+    let refused = |release: &str| match with(&case, &[release]).check() {
+        Ok(checked) => checked.start().err().unwrap().to_string(),
+        Err(error) => error.to_string(),
+    };
+    let message = refused(r#"release=[{ result = "out" }]"#);
+    assert!(
+        message.contains("no result of an avalanche on a terrain") && message.contains("result.nc"),
+        "{message}"
+    );
+    let message = refused(r#"release=[{ result = "none" }]"#);
+    assert!(message.contains("result.nc"), "{message}");
+    let message = refused(r#"release=[{ result = "out", measured = "vertical" }]"#);
+    assert!(message.contains("no meaning for a result"), "{message}");
+}
