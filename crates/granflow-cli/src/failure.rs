@@ -104,7 +104,6 @@ impl From<RunError> for Failure {
     fn from(error: RunError) -> Self {
         match error {
             RunError::Start(error) => error.into(),
-            RunError::Begin(BeginError::Watch(error)) => (*error).into(),
             RunError::Begin(BeginError::Thread(_)) | RunError::Threads(_) => {
                 Self::usage(error.to_string(), "try a smaller --threads")
             }

@@ -154,6 +154,8 @@ fn what_a_run_stands_on_may_not_change() {
         "output.durations={ thickness = 0.5 }",
         "output.precision=f32",
         r#"gauge=[{ name = "foot", at = [1075.0, 2110.0] }]"#,
+        "entrainment={ layer = 0.3, law = \"plough\" }",
+        "material.earth_pressure={ active_passive = { internal = \"35 deg\" } }",
     ] {
         let refused =
             begin(&with(&case, &[change, "time.end=9"]), &out, true, &mut |_| false).unwrap_err().to_string();
@@ -161,7 +163,88 @@ fn what_a_run_stands_on_may_not_change() {
         assert!(refused.contains(&format!("another case: {key}")), "{change}: {refused}");
         assert!(refused.contains("start again without --resume"), "{refused}");
     }
+    let breaks = ["material.forest=0.02", "material.forest_breaks_at=100.0"];
+    let refused = begin(&with(&case, &breaks), &out, true, &mut |_| false).unwrap_err().to_string();
+    assert!(refused.contains("another case: material.forest_breaks_at"), "{refused}");
     assert!(bytes(&out, "result.nc") == kept && !out.join("checkpoint/frames.bin").exists());
+}
+
+/// What acts between the steps goes on where it was: eroded, broken, pressed.
+#[test]
+fn a_layer_a_forest_and_a_passive_pressure_go_on() {
+    let folder = tempfile::tempdir().unwrap();
+    let case = file(folder.path());
+    let [whole, parts] = ["whole", "parts"].map(|name| folder.path().join(name));
+    let all = |end: &str, forest: &str| {
+        let changes = [
+            end,
+            forest,
+            "entrainment={ layer = 0.3, law = \"plough\", lower_bed = true }",
+            "material.forest_breaks_at=20.0",
+            "material.earth_pressure={ active_passive = { internal = \"35 deg\" } }",
+        ];
+        with(&case, &changes)
+    };
+    let sparse = "material.forest=0.02";
+    let unbroken = begin(&all("time.end=9.3", sparse), &whole, false, &mut |_| false).unwrap().summary;
+    assert!(unbroken.extra("eroded_volume") > Some(0.0) && unbroken.extra("forest_broken_area") > Some(0.0));
+    begin(&all("time.end=4.1", sparse), &parts, false, &mut |_| false).unwrap().close().unwrap();
+    let went = begin(&all("time.end=9.3", sparse), &parts, true, &mut |_| false).unwrap();
+    for name in ["eroded_volume", "forest_broken_area", "kinetic_energy_final"] {
+        assert_eq!(went.summary.extra(name), unbroken.extra(name), "{name}");
+    }
+    assert!(bytes(&whole, "checkpoint/frames.bin") == bytes(&parts, "checkpoint/frames.bin"));
+    went.close().unwrap();
+    let dense = begin(&all("time.end=12", "material.forest=0.05"), &parts, true, &mut |_| false).unwrap();
+    assert!(dense.summary.time > 9.3 && dense.summary.mass_error.abs() < 1e-12);
+}
+
+/// Lost files hinder no run from going on where its frames and tables are whole; where nothing is left to do they are named.
+#[test]
+fn a_run_of_which_files_are_lost_goes_on() {
+    let folder = tempfile::tempdir().unwrap();
+    let case = file(folder.path());
+    let [whole, parts] = ["whole", "parts"].map(|name| folder.path().join(name));
+    begin(&with(&case, &["time.end=9.3"]), &whole, false, &mut |_| false).unwrap();
+    let close = |end: &str, resume: bool| {
+        begin(&with(&case, &[end]), &parts, resume, &mut |_| false).unwrap().close().unwrap()
+    };
+    close("time.end=4.1", false);
+    fs::remove_file(parts.join("report.html")).unwrap();
+    let earlier = begin(&with(&case, &["time.end=4"]), &parts, true, &mut |_| false).unwrap_err().to_string();
+    assert!(earlier.contains("report.html is gone") && earlier.contains("makes again"), "{earlier}");
+    // Made again they are of the same end, and the step that it cut is still known.
+    let before = bytes(&parts, "checkpoint/before_end.bin");
+    close("time.end=4.1", true);
+    assert!(parts.join("report.html").exists() && bytes(&parts, "checkpoint/before_end.bin") == before);
+    fs::remove_file(parts.join("report.html")).unwrap();
+    let went = begin(&with(&case, &["time.end=9.3"]), &parts, true, &mut |_| false).unwrap();
+    assert_eq!(went.summary.texts("history").count(), 1);
+    assert!(parts.join("report.html").exists());
+    for name in ["mass.csv", "checkpoint/frames.bin"] {
+        assert!(bytes(&whole, name) == bytes(&parts, name), "{name} differs");
+    }
+    went.close().unwrap();
+    fs::remove_file(parts.join("result.nc")).unwrap();
+    let lost = begin(&with(&case, &["time.end=12"]), &parts, true, &mut |_| false).unwrap_err().to_string();
+    assert!(lost.contains("result.nc is gone") && lost.contains("without --resume"), "{lost}");
+}
+
+/// A path may be in memory; what a run left may not.
+#[test]
+fn a_path_in_memory_is_found_and_a_result_in_memory_refused() {
+    let folder = tempfile::tempdir().unwrap();
+    let case = file(folder.path());
+    let line = r#"{"type":"LineString","coordinates":[[1075,2230],[1075,2110]]}"#;
+    let inputs =
+        granflow::Inputs::default().with_file("<path>", line.as_bytes()).with_file("result.nc", *b"x");
+    let stop = AtomicBool::new(false);
+    let path = with(&case, &["output.path=\"<path>\"", "time.end=1"]).check_with(&inputs).unwrap();
+    let kept = path.compute_in_memory(1, &stop, &mut |_| ()).unwrap();
+    assert_eq!(kept.summary.time, 1.0);
+    let result = with(&case, &[r#"release=[{ result = "out" }]"#]).check_with(&inputs).unwrap();
+    let refused = result.start().err().unwrap().to_string();
+    assert!(refused.contains("in memory") && refused.contains("result.nc"), "{refused}");
 }
 
 /// What a run left lies on the mountain of the next one, with its volume, and stays where it held.
