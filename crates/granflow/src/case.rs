@@ -87,6 +87,7 @@ impl Checked {
         &self.0.run
     }
     /// The files in memory that it may name.
+    #[cfg(feature = "files")]
     pub(crate) fn inputs(&self) -> &Inputs {
         &self.1
     }
