@@ -7,13 +7,14 @@ Without a case: a mountain by a formula, 300 x 120 cells of 10 m.
 
 from __future__ import annotations
 
-import json
 import sys
 import time
 
 import numpy as np
 
 import granflow
+from granflow import _native
+from granflow._run import _dataset
 
 
 def mountain() -> granflow.Case:
@@ -32,10 +33,11 @@ def main() -> None:
     around, inside = [], []
     for _ in range(9):
         begun = time.perf_counter()
-        ds = granflow.run(case, progress=False)
+        # As granflow.run does it; all that Rust does without Python says its own time.
+        found = _native.run(case._native, 0, None)
+        _dataset(found)
         around.append(time.perf_counter() - begun)
-        # From the reading of files to the last number, in Rust.
-        inside.append(json.loads(ds.attrs["summary"])["wall_seconds"])
+        inside.append(found["seconds"])
     # The least: what else the machine does only adds.
     cost, wall = min(a - b for a, b in zip(around, inside, strict=True)), min(inside)
     print(f"run in Rust {1e3 * wall:.0f} ms, Python around it {1e3 * cost:.1f} ms ({100 * cost / wall:.1f} %)")

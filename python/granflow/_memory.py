@@ -131,7 +131,7 @@ def _system(array: xr.DataArray) -> str | None:
 def numbers(values: ArrayLike) -> NDArray[np.float64]:
     """The numbers of an array, NaN where it is masked."""
     if isinstance(values, np.ma.MaskedArray):
-        return np.asarray(values.astype(np.float64).filled(np.nan))
+        return np.asarray(np.ma.filled(values.astype(np.float64), np.nan))
     return np.asarray(values, dtype=np.float64)
 
 

@@ -137,7 +137,7 @@ fn a_name_in_memory_is_held_to_what_a_file_is() {
             .with_raster("<mu>", friction())
             .with_file("<area>", AREA.as_bytes())
     };
-    refused(Inputs::default(), "`terrain.dem`: cannot read <dem>");
+    refused(Inputs::default(), "cannot read <mu>");
     refused(all().with_file("<area>", &b"{}"[..]), "<area>");
     refused(all().with_raster("<mu>", raster(|_, _| -0.5)), "<mu>: found -0.5 at");
     let west = Raster { west: 5000.0, ..friction() };
