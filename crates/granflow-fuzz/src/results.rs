@@ -31,7 +31,7 @@ fn left() -> &'static [Left; 2] {
 fn compute(text: &str) -> Left {
     let folder = tempfile::tempdir().expect("a folder for the seeds");
     let checked = Case::parse(text, "case.toml").and_then(|case| case.check()).expect("the case is in order");
-    let origin = origin(checked.plan()).expect("it names no files");
+    let origin = origin(checked.plan(), &granflow::Inputs::default()).expect("it names no files");
     let options = Options {
         directory: folder.path().to_owned(),
         threads: 1,
