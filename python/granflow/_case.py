@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from collections.abc import Mapping
 from os import PathLike, fspath
 from typing import Any
@@ -32,7 +33,7 @@ class Case:
     ========================================  =====================================================================
 
     Args:
-        source: path of a case file, or its text (what has a line break or a ``=`` is a text), or a dictionary.
+        source: path of a case file, or its text (what has a line break, or a ``=`` and is no file, is a text), or a dictionary.
         tables: the tables of a case as keywords: ``grid={"x": {"from": -6, "to": 6, "cells": 240}}``.
 
     Raises:
@@ -182,7 +183,7 @@ def _values(given: Any) -> Any:
 
 
 def _read(source: str, may_be_text: bool) -> _native.Case:
-    if may_be_text and ("\n" in source or "=" in source):
+    if may_be_text and ("\n" in source or ("=" in source and not os.path.exists(source))):
         return _native.Case.from_text(source, "<text>")
     return _native.Case.from_file(source)
 

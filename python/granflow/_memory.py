@@ -18,7 +18,7 @@ class Raster:
     """Values on square cells of a map.
 
     Args:
-        values: shape (rows, columns); NaN is nodata.
+        values: shape (rows, columns); NaN is nodata, and so is what a masked array masks.
         cell: edge length of a cell in metres.
         west, south: outer edges in metres, x of the western and y of the southern one.
         crs: coordinate reference system, as ``"EPSG:31287"``, 31287 or well-known text.
@@ -59,11 +59,13 @@ class Raster:
     def from_dataarray(cls, array: xr.DataArray) -> Raster:
         """From an array with coordinates, after the conventions of rioxarray.
 
-        The last two dimensions are y and x; their coordinates are the centres of the cells. The reference system comes from
+        The dimensions are y and x, in this order where they have other names; their coordinates are the centres of the cells. The reference system comes from
         ``array.rio.crs``, else from the coordinate ``spatial_ref`` or the attribute ``crs``. A ``_FillValue`` or ``nodata`` in the
         attributes becomes NaN.
         """
         array = array.squeeze(drop=True)
+        if set(array.dims) == {"x", "y"}:
+            array = array.transpose("y", "x")
         if array.ndim != 2:
             raise ValueError(f"a raster has the dimensions (y, x), found {array.dims}")
         y, x = (_centres(array, dimension) for dimension in array.dims)
@@ -85,7 +87,7 @@ class Raster:
 
     def south_first(self) -> NDArray[np.float64]:
         """The values as the engine takes them, row 0 in the south."""
-        values = np.asarray(self.values, dtype=np.float64)
+        values = numbers(self.values)
         return values[::-1] if self.first_row == "north" else values
 
     def system(self) -> str | None:
@@ -126,10 +128,17 @@ def _system(array: xr.DataArray) -> str | None:
     return None if found is None else str(found)
 
 
+def numbers(values: ArrayLike) -> NDArray[np.float64]:
+    """The numbers of an array, NaN where it is masked."""
+    if isinstance(values, np.ma.MaskedArray):
+        return np.asarray(np.ma.filled(values.astype(np.float64), np.nan))
+    return np.asarray(values, dtype=np.float64)
+
+
 def npy(values: ArrayLike) -> bytes:
     """The numbers as a file of NumPy's format."""
     out = io.BytesIO()
-    np.save(out, np.ascontiguousarray(values, dtype=np.float64), allow_pickle=False)
+    np.save(out, np.ascontiguousarray(numbers(values)), allow_pickle=False)
     return out.getvalue()
 
 
@@ -183,8 +192,17 @@ def _interface(given: Any) -> Mapping[str, Any]:
 
 
 def _dumped(found: Mapping[str, Any]) -> bytes:
-    return json.dumps(found, default=_plain).encode()
+    return json.dumps(_plain(found)).encode()
 
 
 def _plain(given: Any) -> Any:
-    return given.item() if isinstance(given, np.generic) else str(given)
+    """What JSON can say of a value; an attribute without a value is null."""
+    if isinstance(given, Mapping):
+        return {str(name): _plain(one) for name, one in given.items()}
+    if isinstance(given, (list, tuple)):
+        return [_plain(one) for one in given]
+    if isinstance(given, np.generic):
+        given = given.item()
+    if isinstance(given, float) and given != given:
+        return None
+    return given if given is None or isinstance(given, (bool, int, float, str)) else str(given)

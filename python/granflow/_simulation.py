@@ -150,8 +150,9 @@ class Simulation:
     def __getitem__(self, name: str) -> NDArray[np.float64]:
         """A field of the state, read-only; shape (rows, columns) or (cells), row 0 at the smallest y, in the units of the case.
 
-        ``thickness`` and the layers of a sandpile are the engine's own memory (:class:`StateView`); what the engine does not
-        keep, velocities say, is computed.
+        What the engine keeps is its own memory (:class:`StateView`): ``thickness`` on a grid, the layers of a sandpile. What it does not
+        keep is computed: velocities, and on terrain the thickness normal to the bed, where it keeps the volume per plan area (see
+        :attr:`state`).
 
         Raises:
             KeyError: there is no such field; the message names those that there are.
@@ -159,9 +160,21 @@ class Simulation:
         array, borrowed = self._native.field(name)
         if not borrowed:
             return array
+        return self._view(array, name)
+
+    def _view(self, array: NDArray[np.float64], name: str) -> StateView:
         view: StateView = array.view(StateView)
         view._field, view._simulation, view._moves = name, self, self._moves
         return view
+
+    @property
+    def state(self) -> tuple[StateView, ...]:
+        """The state as the engine keeps it, without a copy; shapes as those of the fields, of a sandpile one more for the nodes.
+
+        On a grid thickness h and discharge (q_x, q_y); on terrain volume per plan area H and its discharge along x and y; of a
+        sandpile the standing and the rolling layer.
+        """
+        return tuple(self._view(self._native.component(k), f"state[{k}]") for k in range(self._native.components))
 
     def __contains__(self, name: object) -> bool:
         return name in self._native.fields

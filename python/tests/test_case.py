@@ -105,6 +105,16 @@ def test_rasters_come_in_every_order_of_rows(mountain):
         assert np.array_equal(first.x, other.x) and np.array_equal(first.y, other.y)
 
 
+def test_what_is_masked_or_declared_is_nodata(mountain):
+    hole = np.zeros(mountain.bed.shape, dtype=bool)
+    hole[:, -20:] = True
+    masked = np.ma.masked_array(np.where(hole, -9999.0, mountain.bed), hole)
+    declared = xr.DataArray(masked.data.T, {"x": mountain.x, "y": mountain.y}, ("x", "y"), attrs={"_FillValue": -9999.0})
+    for dem in (granflow.Raster(masked, 10.0), declared):
+        ds = granflow.run(mountain.case(dem=dem).set("time", {"steps": 1}), progress=False)
+        assert np.array_equal(np.isnan(ds.bed.values), hole)
+
+
 def test_rioxarray_says_the_system(mountain):
     pytest.importorskip("rioxarray")
     array = xr.DataArray(mountain.bed, {"y": mountain.y, "x": mountain.x}, ("y", "x")).rio.write_crs("EPSG:32632")
@@ -132,7 +142,7 @@ def test_a_geodataframe_brings_attributes_and_system(mountain):
     geopandas = pytest.importorskip("geopandas")
     shapely = pytest.importorskip("shapely")
     frame = geopandas.GeoDataFrame(
-        {"thickness": [1.0, 2.0]},
+        {"thickness": [1.0, 2.0], "observed": [np.nan, 3.0]},
         geometry=[shapely.box(150, 250, 200, 300), shapely.box(200, 250, 250, 300)],
         crs="EPSG:31287",
     )

@@ -70,6 +70,13 @@ def test_a_view_on_a_mountain_takes_no_time(mountain):
     with pytest.raises(KeyError, match="thickness, velocity_x"):
         sim["depth"]
     assert "thickness" in sim and "depth" not in sim
+    height, discharge_x, _ = sim.state
+    assert np.shares_memory(height, sim.state[0]) and height.shape == mountain.bed.shape
+    wet = sim["thickness"] > 1e-3
+    assert np.allclose((discharge_x / np.where(wet, height, 1.0))[wet], sim["velocity_x"][wet])
+    sim.step()
+    with pytest.raises(granflow.StaleViewError, match="state\\[0\\]"):
+        height.sum()
 
 
 def test_a_checkpoint_goes_on_with_the_same_bits(mountain):

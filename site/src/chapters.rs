@@ -10,6 +10,7 @@ pub const PARTS: [(&str, &[&str]); 4] = [
             "docs/case-file.md",
             "docs/outputs.md",
             "docs/ensemble.md",
+            "docs/python.md",
             "docs/qgis.md",
             "docs/glossary.md",
             "cases/",

@@ -10,6 +10,7 @@ use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicBool, Ordering};
+use std::time::Instant;
 
 /// Where a run is.
 #[derive(Clone, Copy, Default)]
@@ -22,7 +23,7 @@ struct Status {
 
 /// Computes a case on so many threads (0: all cores). `progress` is called now and then with time, end (None: not known), steps, wet cells and the largest
 /// speed.
-/// Returns coordinates, variables, attributes, the summary as JSON, and the remarks of readers.
+/// Returns coordinates, variables, attributes, the summary as JSON, the remarks of readers, and the seconds that all but arrays took.
 #[pyfunction]
 #[pyo3(signature = (case, threads, progress))]
 pub fn run<'py>(
@@ -36,8 +37,8 @@ pub fn run<'py>(
     let end = checked.plan().ends.time;
     let mut remarks = Vec::new();
     let work = || {
-        let mut first = true;
-        checked.compute_in_memory(threads, &stop, &mut |run: &dyn Run| {
+        let (mut first, begun) = (true, Instant::now());
+        let result = checked.compute_in_memory(threads, &stop, &mut |run: &dyn Run| {
             if std::mem::take(&mut first) {
                 remarks.extend(run.plane().domain.remarks());
             }
@@ -48,7 +49,8 @@ pub fn run<'py>(
                 wet: run.record().wet_cells,
                 speed: run.stepper().speed(),
             });
-        })
+        });
+        (result, begun.elapsed())
     };
     let look = |py: Python<'_>| {
         let now = *status.lock().unwrap_or_else(|broken| broken.into_inner());
@@ -59,7 +61,7 @@ pub fn run<'py>(
             _ => Ok(()),
         }
     };
-    let (result, interrupt) = watched(py, work, || stop.store(true, Ordering::Relaxed), look);
+    let ((result, taken), interrupt) = watched(py, work, || stop.store(true, Ordering::Relaxed), look);
     if let Some(interrupt) = interrupt {
         return Err(interrupt);
     }
@@ -69,5 +71,6 @@ pub fn run<'py>(
     }
     let results = results(py, kept)?;
     results.set_item("remarks", remarks)?;
+    results.set_item("seconds", taken.as_secs_f64())?;
     Ok(results)
 }

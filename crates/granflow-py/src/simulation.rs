@@ -5,9 +5,9 @@ use crate::error::{of_computation, of_run, of_start};
 use crate::interrupt::PAUSE;
 use granflow::run::{Ends, Failure, FrameClock, Run, Saved, reached, watch_for};
 use granflow::session::threads;
-use numpy::ndarray::{ArrayView, Dim, IxDyn, IxDynImpl, ShapeBuilder};
+use numpy::ndarray::{ArrayView, IxDyn, ShapeBuilder};
 use numpy::{PyArray1, PyArrayDyn, PyArrayMethods};
-use pyo3::exceptions::{PyKeyError, PyValueError};
+use pyo3::exceptions::{PyIndexError, PyKeyError, PyValueError};
 use pyo3::prelude::*;
 use rayon::ThreadPool;
 use std::time::Instant;
@@ -67,6 +67,24 @@ impl Simulation {
 /// Says whether a step of this length was the last that there is.
 fn came(dt: f64) -> Came {
     if dt.is_finite() { Came::OnTheWay } else { Came::There }
+}
+
+/// Numbers of a simulation, a row every `row` of them, as an array without a copy that cannot be written.
+fn lent<'py>(
+    owner: &Bound<'py, Simulation>,
+    values: &[f64],
+    [rows, columns]: [usize; 2],
+    row: usize,
+    flat: bool,
+) -> PyResult<Bound<'py, PyAny>> {
+    let (shape, strides) = if flat { (vec![columns], vec![1]) } else { (vec![rows, columns], vec![row, 1]) };
+    let cells = ArrayView::from_shape(IxDyn(&shape).strides(IxDyn(&strides)), values)
+        .map_err(|error| PyValueError::new_err(error.to_string()))?;
+    // SAFETY: the array keeps the simulation alive, and while that lives the memory of its state does: steps exchange the arrays of
+    // the state, and none is given back before the end.
+    let array = unsafe { PyArrayDyn::borrow_from_array(&cells, owner.clone().into_any()) };
+    array.readwrite().make_nonwriteable();
+    Ok(array.into_any())
 }
 
 #[pymethods]
@@ -158,31 +176,39 @@ impl Simulation {
         Ok(self.run.time() != shown)
     }
 
-    /// A field of the state by its name: an array that cannot be written, and whether it is the engine's own memory.
+    /// A field by its name: an array that cannot be written, and whether it is the engine's own memory.
     fn field<'py>(slf: Bound<'py, Self>, name: &str) -> PyResult<(Bound<'py, PyAny>, bool)> {
-        let py = slf.py();
         let own = slf.borrow();
         let Some(view) = own.run.field(name) else {
             let known: Vec<_> = own.run.plane().series().into_iter().map(|field| field.name).collect();
             return Err(PyKeyError::new_err(format!("{name:?}; there are {}", known.join(", "))));
         };
-        let [rows, columns] = view.shape;
-        let flat = own.run.stepper().dimensions() == 1;
-        let shape: Vec<usize> = if flat { vec![columns] } else { vec![rows, columns] };
-        let borrowed = view.is_borrowed();
-        let array = if borrowed {
-            let strides: Vec<usize> = if flat { vec![1] } else { vec![view.row, 1] };
-            let shape: Dim<IxDynImpl> = IxDyn(&shape);
-            let cells = ArrayView::from_shape(shape.strides(IxDyn(&strides)), &view.values[view.start..])
-                .map_err(|error| PyValueError::new_err(error.to_string()))?;
-            // SAFETY: the array keeps the simulation alive, and while that lives the memory of its state does: steps exchange the
-            // arrays of the state, and none is given back before the end.
-            unsafe { PyArrayDyn::borrow_from_array(&cells, slf.clone().into_any()) }
-        } else {
-            PyArray1::from_vec(py, view.values.into_owned()).reshape(shape)?
-        };
+        let ([rows, columns], flat) = (view.shape, own.run.stepper().dimensions() == 1);
+        if view.is_borrowed() {
+            return Ok((lent(&slf, &view.values[view.start..], view.shape, view.row, flat)?, true));
+        }
+        let shape = if flat { vec![columns] } else { vec![rows, columns] };
+        let array = PyArray1::from_vec(slf.py(), view.values.into_owned()).reshape(shape)?;
         array.readwrite().make_nonwriteable();
-        Ok((array.into_any(), borrowed))
+        Ok((array.into_any(), false))
+    }
+
+    /// Component number `k` of the state, as the engine keeps it: its own memory.
+    fn component<'py>(slf: Bound<'py, Self>, k: usize) -> PyResult<Bound<'py, PyAny>> {
+        let own = slf.borrow();
+        let stepper = own.run.stepper();
+        if k >= stepper.components() {
+            return Err(PyIndexError::new_err(format!("the state has {} components", stepper.components())));
+        }
+        let view = stepper.component(k);
+        let ([columns, rows], [_, row]) = (view.shape, view.strides);
+        lent(&slf, &view.data[view.offset..], [rows, columns], row, stepper.dimensions() == 1)
+    }
+
+    /// How many components the state has.
+    #[getter]
+    fn components(&self) -> usize {
+        self.run.stepper().components()
     }
 
     /// The maps of peaks and times so far by name, x fastest.
