@@ -85,7 +85,8 @@ impl<const D: usize, S: Scheme<D, f64>> Simulation<D, S> {
             let mut values = Vec::new();
             for j in rows[0]..rows[1] {
                 let place = self.layout.place(columns[0] as isize, j as isize);
-                for (i, cell) in (columns[0]..).zip(self.row(place, columns[1] - columns[0])) {
+                let row = (columns[0]..).zip(self.row(place, columns[1] - columns[0]));
+                for (i, cell) in row.filter(|(_, cell)| self.scheme.diagnostics(cell).speed_squared > 0.0) {
                     values.extend(value(per_axis!(k => if k == 0 { i } else { j }), &cell));
                 }
             }

@@ -19,8 +19,13 @@ pub fn coefficients(internal: f64, mu: f64) -> Option<[f64; 2]> {
     if apart.is_nan() || apart < 0.0 {
         return None;
     }
-    let (mean, apart) = (1.0 + 2.0 * square, 2.0 * Real::sqrt((1.0 + square) * apart));
-    Some([mean - apart, mean + apart])
+    let mean = 1.0 + 2.0 * square;
+    if apart == 0.0 {
+        return Some([mean; 2]);
+    }
+    let passive = mean + 2.0 * Real::sqrt((1.0 + square) * apart);
+    // Their product is 1 + 4 mu^2 (1 + tan^2 phi); their difference from the mean would leave nothing of a small one.
+    Some([(1.0 + 4.0 * (mu * mu) * (1.0 + square)) / passive, passive])
 }
 
 /// The most that compression adds at the face of two cells: the momentum per cell area, in a step with dt/dx = `lambda`, of the
@@ -37,7 +42,7 @@ pub struct Mass {
     pub mass: f64,
     /// Its velocity along the line.
     pub velocity: f64,
-    /// The most that compression adds at its upper face ([`excess`]); of no use in the last cell.
+    /// The most that compression adds at its face to the next cell ([`excess`]); of no use in the last one.
     pub most: f64,
 }
 
@@ -61,50 +66,72 @@ impl Knot {
     }
 }
 
-/// The momentum along a line of cells that the stresses of compression give each of them.
+/// A wall is so many times heavier than the line before it.
+#[cfg(feature = "std")]
+const WALL: f64 = 1e12;
+
+/// The momentum along a line of cells that the stresses of compression give each of them. An end at a wall has in `walls` the most that
+/// compression adds there; at other ends nothing does.
 ///
-/// The stress P of each face between two cells, 0 <= P <= `most`, goes from the lower cell to the upper one. Of all choices the one after which the
+/// The stress P of each face, 0 <= P <= `most`, goes from the lower cell to the upper one. Of all choices the one after which the
 /// kinetic energy is least: P = 0 where the cells part, P = `most` where they still approach each other, between these what lets them
 /// move alike. Over the mass up to each face, the momentum Q - P is then the taut string through the tube from Q - `most` to Q: it is found
-/// from end to end by the funnel of what can be seen from its last knot.
+/// from end to end by the funnel of what can be seen from its last knot. A wall is a mass that does not move, beyond the end.
 ///
-/// So the energy does not grow, the momentum of the line stays, and cells all at rest or moving alike get nothing.
+/// So the energy does not grow, the momentum of a line without walls stays, and cells all at rest or moving alike get nothing.
 #[cfg(feature = "std")]
 #[must_use]
-pub fn stresses(line: &[Mass]) -> Vec<f64> {
-    let start = Knot { face: 0, mass: 0.0, momentum: 0.0, stress: 0.0 };
+pub fn stresses(line: &[Mass], walls: [Option<f64>; 2]) -> Vec<f64> {
+    let all: f64 = line.iter().map(|cell| cell.mass).sum();
+    let before = usize::from(walls[0].is_some());
+    // The masses of the line are counted from its own begin: beside that of a wall nothing would be left of them.
+    let start = if before == 1 { -WALL * all } else { 0.0 };
+    let start = Knot { face: 0, mass: start, momentum: 0.0, stress: 0.0 };
     let mut funnel = Funnel { knots: vec![start], chains: [vec![start].into(), vec![start].into()] };
+    if let Some(most) = walls[0] {
+        funnel.pass(Knot { face: 1, mass: 0.0, momentum: 0.0, stress: 0.0 }, most);
+    }
     let (mut mass, mut momentum) = (0.0, 0.0);
+    let mut end = start;
     for (cell, one) in line.iter().enumerate() {
         mass += one.mass;
         momentum += one.mass * one.velocity;
-        let face = cell + 1;
-        let most = if face == line.len() { 0.0 } else { one.most };
-        for (side, stress) in [0.0, most].into_iter().enumerate() {
-            funnel.widen(side, Knot { face, mass, momentum: momentum - stress, stress });
-        }
+        end = Knot { face: before + cell + 1, mass, momentum, stress: 0.0 };
+        let last = cell + 1 == line.len();
+        funnel.pass(end, if last { walls[1].unwrap_or(0.0) } else { one.most });
     }
-    let end = Knot { face: line.len(), mass, momentum, stress: 0.0 };
+    if walls[1].is_some() {
+        end = Knot { face: end.face + 1, mass: mass + WALL * all, ..end };
+        funnel.pass(end, 0.0);
+    }
     if funnel.knots.last().is_some_and(|last| last.face < end.face) {
         funnel.knots.push(end);
     }
     let mut given = Vec::with_capacity(line.len());
     for pair in funnel.knots.windows(2) {
         let [lower, upper] = [pair[0], pair[1]];
-        let cells = &line[lower.face..upper.face];
-        let push = lower.stress - upper.stress;
-        if let [_] = cells {
-            given.push(push);
-            continue;
-        }
-        let mass: f64 = cells.iter().map(|cell| cell.mass).sum();
-        // Without the velocity that all have, of which nothing is to be left by rounding.
-        let base = cells[0].velocity;
-        let apart: f64 = cells.iter().map(|cell| cell.mass * (cell.velocity - base)).sum();
-        let velocity = (apart + push) / mass;
-        given.extend(cells.iter().map(|cell| cell.mass * (velocity - (cell.velocity - base))));
+        let at_wall = lower.face < before || upper.face > before + line.len();
+        let cells = &line[lower.face.max(before) - before..(upper.face - before).min(line.len())];
+        given.extend(together(cells, lower.stress - upper.stress, at_wall));
     }
     given
+}
+
+/// What cells get that move as one under a `push`, or stand with a wall.
+#[cfg(feature = "std")]
+fn together(cells: &[Mass], push: f64, at_wall: bool) -> Vec<f64> {
+    if at_wall {
+        return cells.iter().map(|cell| -(cell.mass * cell.velocity)).collect();
+    }
+    if let [_] = cells {
+        return vec![push];
+    }
+    let mass: f64 = cells.iter().map(|cell| cell.mass).sum();
+    // Without the velocity that all have, of which nothing is to be left by rounding.
+    let base = cells[0].velocity;
+    let apart: f64 = cells.iter().map(|cell| cell.mass * (cell.velocity - base)).sum();
+    let velocity = (apart + push) / mass;
+    cells.iter().map(|cell| cell.mass * (velocity - (cell.velocity - base))).collect()
 }
 
 /// What can be seen from the last knot of the string: the ends of the tube that bound it, below the upper one (P = 0) a chain with
@@ -117,6 +144,12 @@ struct Funnel {
 
 #[cfg(feature = "std")]
 impl Funnel {
+    /// Go on to the next face, whose stress is at most `most`.
+    fn pass(&mut self, knot: Knot, most: f64) {
+        self.widen(0, knot);
+        self.widen(1, Knot { momentum: knot.momentum - most, stress: most, ..knot });
+    }
+
     /// Go on to another end of the tube on a side, 0 the upper and 1 the lower one.
     fn widen(&mut self, side: usize, knot: Knot) {
         // Is the first velocity on the inner side of the second, seen from this side of the tube?
@@ -216,7 +249,7 @@ mod tests {
                     most: size * dice(&mut state),
                 })
                 .collect();
-            let (found, wanted) = (stresses(&line), by_descent(&line));
+            let (found, wanted) = (stresses(&line, [None; 2]), by_descent(&line));
             assert_eq!(found.len(), line.len());
             for (found, wanted) in found.iter().zip(&wanted) {
                 assert!((found - wanted).abs() < 1e-9, "trial {trial}: {found} {wanted}");
@@ -227,19 +260,63 @@ mod tests {
         }
     }
 
+    /// A wall is a heavy cell; it stands at either end and at both.
+    #[test]
+    fn walls_stand_at_either_end() {
+        let mut state = 11;
+        for trial in 0..200 {
+            let size = 10_f64.powi(trial % 5 - 3);
+            let line: Vec<Mass> = (0..1 + trial as usize % 12)
+                .map(|_| Mass {
+                    mass: 0.1 + dice(&mut state),
+                    velocity: dice(&mut state) - 0.5,
+                    most: size * dice(&mut state),
+                })
+                .collect();
+            let most = [size * dice(&mut state), size * dice(&mut state)];
+            for walls in [[true, false], [false, true], [true, true]] {
+                let given = [0, 1].map(|side| walls[side].then_some(most[side]));
+                let found = stresses(&line, given);
+                let wall = |most| Mass { mass: 1e9, velocity: 0.0, most };
+                let mut heavy = line.clone();
+                if walls[1] {
+                    heavy.last_mut().unwrap().most = most[1];
+                    heavy.push(wall(0.0));
+                }
+                if walls[0] {
+                    heavy.insert(0, wall(most[0]));
+                }
+                let wanted = by_descent(&heavy).split_off(usize::from(walls[0]));
+                for (found, wanted) in found.iter().zip(&wanted) {
+                    assert!((found - wanted).abs() < 1e-8, "trial {trial} {walls:?}: {found} {wanted}");
+                }
+                // The mirror image.
+                let mut mirrored: Vec<Mass> =
+                    line.iter().rev().map(|cell| Mass { velocity: -cell.velocity, ..*cell }).collect();
+                for (k, cell) in mirrored.iter_mut().enumerate() {
+                    cell.most = line.len().checked_sub(k + 2).map_or(0.0, |below| line[below].most);
+                }
+                let image = stresses(&mirrored, [given[1], given[0]]);
+                for (a, b) in found.iter().zip(image.iter().rev()) {
+                    assert!((a + b).abs() < 1e-13, "trial {trial} {walls:?}: {a} {b}");
+                }
+            }
+        }
+    }
+
     #[test]
     fn rest_and_a_body_that_moves_as_one_feel_nothing() {
         for velocity in [0.0, 0.1, -3.7] {
             let line: Vec<Mass> =
                 (0..30).map(|k| Mass { mass: 0.3 + 0.01 * f64::from(k), velocity, most: 2.0 }).collect();
-            assert!(stresses(&line).iter().all(|push| *push == 0.0));
+            assert!(stresses(&line, [None; 2]).iter().all(|push| *push == 0.0));
         }
         // Parting cells too, and those that no stress can hold.
         let parting: Vec<Mass> =
             (0..30).map(|k| Mass { mass: 0.5, velocity: 0.1 * f64::from(k), most: 2.0 }).collect();
-        assert!(stresses(&parting).iter().all(|push| *push == 0.0));
+        assert!(stresses(&parting, [None; 2]).iter().all(|push| *push == 0.0));
         let apart: Vec<Mass> =
             (0..30).map(|k| Mass { mass: 0.5, velocity: f64::from(-k), most: 0.0 }).collect();
-        assert!(stresses(&apart).iter().all(|push| *push == 0.0));
+        assert!(stresses(&apart, [None; 2]).iter().all(|push| *push == 0.0));
     }
 }

@@ -21,5 +21,6 @@ pub(super) fn is_all(run: &dyn Run) -> bool {
     let (time, came) = (run.time(), run.came());
     // Counted from when the last of the mass came; where that never flowed, from the start.
     let long = if flowed > came { time - came >= 1.5 * (flowed - came) } else { time >= 1.5 * came };
-    is_due(run.steps()) && flowed > 0.0 && long
+    // Where nothing moves at all the run is at rest, which the next step finds.
+    is_due(run.steps()) && flowed > 0.0 && long && run.totals().moving > 0
 }

@@ -231,3 +231,40 @@ fn a_round_cap_spreads_with_the_active_coefficient() {
     assert!(own < 0.01, "{own}");
     assert!(one > 2.0 * own, "{one} under k = 1");
 }
+
+/// A wall is the mirror: a cap that runs against one, on either side, is half of two that run against each other.
+#[test]
+fn a_wall_is_a_mirror_at_either_end() {
+    for scheme in ["energy_stable", "energy_stable_2", "balanced"] {
+        let run = |from: f64, to: f64, cells: usize, sides: [&str; 2], thickness: &str, velocity: &str| {
+            let text = format!(
+                "grid.x = {{ from = {from}, to = {to}, cells = {cells} }}\ngrid.boundary.x = [\"{}\", \"{}\"]\n\
+                 initial.thickness.formula = \"{thickness}\"\ninitial.velocity_x.formula = \"{velocity}\"\n\
+                 scheme.name = \"{scheme}\"\ntime.end = 1.5\n[material]\nepsilon = 0.3\nfriction.coulomb = {{ mu = 0.3 }}\n\
+                 earth_pressure.active_passive = {{ internal = \"35 deg\" }}\n",
+                sides[0], sides[1]
+            );
+            let mut run = start(&text);
+            run.until(1.5).unwrap();
+            run.field("thickness").unwrap().iter().collect::<Vec<f64>>()
+        };
+        let left =
+            run(0.0, 4.0, 200, ["wall", "open"], "max(0, 1 - ((x-1)/0.9)^2)", "if(abs(x-1) < 0.9, -1.5, 0)");
+        let right =
+            run(-4.0, 0.0, 200, ["open", "wall"], "max(0, 1 - ((x+1)/0.9)^2)", "if(abs(x+1) < 0.9, 1.5, 0)");
+        let both = run(
+            -4.0,
+            4.0,
+            400,
+            ["open", "open"],
+            "max(0, 1 - ((abs(x)-1)/0.9)^2)",
+            "if(abs(abs(x)-1) < 0.9, if(x > 0, -1.5, 1.5), 0)",
+        );
+        for k in 0..200 {
+            for (found, wanted) in [(left[k], both[200 + k]), (right[k], both[k]), (left[k], right[199 - k])]
+            {
+                assert!((found - wanted).abs() < 1e-9, "{scheme}: cell {k}, {found} {wanted}");
+            }
+        }
+    }
+}

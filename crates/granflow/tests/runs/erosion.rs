@@ -234,6 +234,7 @@ fn what_cannot_be_picked_up_is_refused() {
     let folder = valley();
     for (parts, words) in [
         ("[entrainment]\nlayer = -0.1\nlaw = \"plough\"\n", "a number >= 0"),
+        ("[entrainment]\nlayer = 1e30\nlaw = \"plough\"\n", "at most 1000 m"),
         ("[entrainment]\nlayer = 0.1\nlaw = \"plow\"\n", "plow"),
         ("[entrainment]\nlayer = 0.1\n", "law"),
         ("[entrainment]\nlayer = 0.1\nlaw.speed = { coefficient = 0.0 }\n", "a number > 0"),
@@ -246,4 +247,29 @@ fn what_cannot_be_picked_up_is_refused() {
     }
     let error = try_start(folder.path(), &format!("forest_breaks_at = 10.0\n{FIRST}"), "end = 1.0");
     assert!(error.err().unwrap_or_default().contains("no forest"));
+}
+
+/// A pile at rest loses nothing of its layer, whatever moves beside it.
+#[test]
+fn nothing_is_picked_up_under_what_stands() {
+    let folder = tempfile::tempdir().unwrap();
+    write_grid(&folder.path().join("dem.asc"), [90, 24], |_, _| 100.0);
+    // One pile holds, its steepest slope being 0.24, and one collapses.
+    let parts = "[[release]]\ncap = { height = 3.0, centre = [60.0, 60.0], radius = 25.0 }\n\
+                 [[release]]\ncap = { height = 20.0, centre = [150.0, 60.0], radius = 20.0 }\n\
+                 [entrainment]\nlayer = 0.5\nlaw.shear = { threshold = 0.0, depth_by_stress = 1.0, rate = 10.0 }\n";
+    let mut run = start(folder.path(), parts, "end = 60.0");
+    rest(&mut *run);
+    let speeds = run.peaks().into_iter().find(|(name, _)| *name == "peak_speed").unwrap().1;
+    let eroded = map(&mut *run, "eroded_depth");
+    let mut stood = 0;
+    for (cell, (speed, depth)) in speeds.iter().zip(&eroded).enumerate() {
+        if cell % 90 < 18 {
+            assert!(speed.is_nan() || *speed == 0.0, "the pile moves at {speed}");
+            assert!(depth.is_nan(), "{depth} m at rest");
+            stood += usize::from(*speed == 0.0);
+        }
+    }
+    assert!(stood > 20, "{stood}");
+    assert!(number(&*run, "eroded_volume").unwrap() > 100.0);
 }

@@ -73,8 +73,8 @@ impl Words {
     /// Checks the numbers; `density` is that of the flow.
     pub fn check(&self, look: &Look, density: f64) -> Result<Entrainment, CaseError> {
         look.usual("entrainment.density", self.density)?;
-        let place = self.layer.in_place(look, KEY, Range::NotNegative)?;
-        let layer = InSpace { index: LAYER, key: KEY.to_owned(), place, range: Range::NotNegative, per: 1.0 };
+        let place = self.layer.in_place(look, KEY, Range::Depth)?;
+        let layer = InSpace { index: LAYER, key: KEY.to_owned(), place, range: Range::Depth, per: 1.0 };
         Ok(Entrainment {
             layer,
             density: self.density.unwrap_or(density),

@@ -94,7 +94,12 @@ pub enum Range {
     AboveFirst(&'static str),
     /// Not below the first parameter of the law, of this name.
     NotBelowFirst(&'static str),
+    /// The depth of a layer in m.
+    Depth,
 }
+
+/// No erodible layer is deeper \[m\].
+const DEEPEST: f64 = 1000.0;
 
 impl Range {
     /// Is it such a number, `first` being the first parameter of the law?
@@ -108,6 +113,7 @@ impl Range {
                 Self::Exponent => (0.2..=4.0).contains(&value),
                 Self::AboveFirst(_) => value > first,
                 Self::NotBelowFirst(_) => value >= first,
+                Self::Depth => (0.0..=DEEPEST).contains(&value),
             }
     }
     /// Is it compared with the first parameter?
@@ -124,6 +130,7 @@ impl Range {
             Self::Exponent => "an exponent from 0.2 to 4".to_owned(),
             Self::AboveFirst(name) => format!("a number above {name}"),
             Self::NotBelowFirst(name) => format!("a number not below {name}"),
+            Self::Depth => format!("a number >= 0, at most {DEEPEST} m"),
         }
     }
 }

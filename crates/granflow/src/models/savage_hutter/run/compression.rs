@@ -19,8 +19,8 @@ pub(super) struct Compression {
     until: f64,
 }
 
-/// A wall is a cell so many times heavier than the line before it.
-const WALL: f64 = 1e12;
+/// So much of the largest momentum of a line is left by rounding where none is to be left.
+const ROUNDING: f64 = 1e-14;
 
 /// A wet cell of a line.
 struct Wet<const D: usize> {
@@ -74,24 +74,19 @@ impl Compression {
             velocity: cell.state.velocity()[axis],
             most: cells.get(k + 1).map_or(0.0, |next| most(cell, next)),
         };
-        let mut line: Vec<Mass> = cells.iter().enumerate().map(of).collect();
-        let wall =
-            |cell: &Wet<D>, mass: f64| Mass { mass: WALL * mass, velocity: 0.0, most: most(cell, cell) };
-        let mass: f64 = line.iter().map(|cell| cell.mass).sum();
-        if walls[1] {
-            if let Some(before) = line.last_mut() {
-                before.most = most(last, last);
-            }
-            line.push(wall(last, mass));
-        }
-        if walls[0] {
-            line.insert(0, wall(first, mass));
-        }
-        let pushes = stresses(&line).into_iter().skip(usize::from(walls[0]));
+        let line: Vec<Mass> = cells.iter().enumerate().map(of).collect();
+        let at = [first, last];
+        let walls = [0, 1].map(|side| walls[side].then(|| most(at[side], at[side])));
+        let pushes = stresses(&line, walls);
+        let largest = cells.iter().map(|cell| cell.state.q[axis].abs()).fold(0.0, f64::max);
         let pressed = cells.iter().zip(pushes).filter(|(_, push)| *push != 0.0);
         pressed
             .map(|(cell, push)| {
-                let q = std::array::from_fn(|k| cell.state.q[k] + cell.along[k] * push);
+                let q = std::array::from_fn(|k| {
+                    let new = cell.state.q[k] + cell.along[k] * push;
+                    // What comes to rest is at rest, and does not move by a rounding.
+                    if new.abs() <= ROUNDING * largest { 0.0 } else { new }
+                });
                 (cell.index, Flow { h: cell.state.h, q })
             })
             .collect()

@@ -13,11 +13,13 @@ use crate::watch::Watch;
 use granflow_case::avalanche::Material;
 use granflow_case::chute::Plan as OnChute;
 #[cfg(feature = "geo")]
-use granflow_case::terrain::{Plan as OnTerrain, TerrainScheme};
+use granflow_case::terrain::{Entrainment, Plan as OnTerrain, TerrainScheme};
 use granflow_case::{Axis, Durations, Frames, RunPlan, Side};
 #[cfg(feature = "geo")]
 use granflow_geo::terrain::{Pits, Survey};
 use granflow_model::real::CompensatedSum;
+#[cfg(feature = "geo")]
+use granflow_model::savage_hutter::erosion::Erosion;
 
 /// A fast avalanche \[m/s\].
 #[cfg(feature = "geo")]
@@ -49,6 +51,11 @@ pub(crate) fn terrain(run: &RunPlan, plan: &OnTerrain, inputs: &Inputs) -> Resul
     let mut lines = case(run, material(&loaded.material), &format!("{order}, film {:e}, ", plan.scheme.film));
     lines.push(threshold(run, " m"));
     lines.extend(mountain(&loaded, plan.material.gravity));
+    lines.extend(
+        plan.entrainment.as_ref().zip(loaded.layer.as_ref()).map(|(one, (_, volume))| erodible(one, *volume)),
+    );
+    let strength = plan.forest_breaks_at.map(|pascal| format!("it breaks at {} kPa", pascal / 1000.0));
+    lines.extend(strength.map(|text| ("forest", text)));
     let remarks: Vec<Line> = loaded.remarks.iter().map(|one| (one.kind(), one.text().to_owned())).collect();
     let reading = loaded.reading as f64;
     // Mass and pull are those of all releases together.
@@ -322,12 +329,25 @@ fn mountain(loaded: &Loaded, gravity: f64) -> Vec<Line> {
             .iter()
             .map(|(key, [least, largest])| ("parameter", format!("{key} from {least} to {largest}"))),
     );
-    if let Some((_, volume)) = &loaded.layer {
-        lines.push(("erodible", format!("a layer of {volume:.1} m3 in all")));
-    }
     let released = loaded.parts.iter().map(|(_, _, volume)| volume).sum();
     lines.push(("pits", pits(&Pits::of(bed), released)));
     lines
+}
+
+/// The layer that the flow picks up, of this volume \[m^3\].
+#[cfg(feature = "geo")]
+fn erodible(entrainment: &Entrainment, volume: f64) -> Line {
+    let Entrainment { density, law, lower_bed, .. } = entrainment;
+    let law = match law {
+        Erosion::Speed { coefficient } => format!("picked up by speed, {coefficient} of the way"),
+        Erosion::Shear { threshold, depth_by_stress, rate } => format!(
+            "picked up where the stress exceeds {threshold} Pa, at {rate} m/s to {depth_by_stress} m for each Pa beyond"
+        ),
+        Erosion::Energy { specific } => format!("picked up by the work of friction, {specific} J/kg"),
+        Erosion::Plough => "taken whole by the front".to_owned(),
+    };
+    let bed = if *lower_bed { "; the bed sinks" } else { "" };
+    ("erodible", format!("a layer of {volume:.1} m3 of {density} kg/m3, {law}{bed}"))
 }
 
 /// What cannot run out of the terrain, beside the release.

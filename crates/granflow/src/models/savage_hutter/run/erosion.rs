@@ -145,7 +145,8 @@ where
         let grid = simulation.grid();
         let cells = self.taken.iter().enumerate().filter(|(_, depth)| **depth > 0.0);
         let volumes = cells.map(|(cell, depth)| depth / simulation.ground(grid.index(cell)).thickness(1.0));
-        let volume = volumes.sum::<f64>() * grid.measure();
+        // The sum of none is -0.
+        let volume = (0.0 + volumes.sum::<f64>()) * grid.measure();
         vec![("eroded_volume".to_owned(), volume), ("eroded_mass".to_owned(), volume * self.densities[1])]
     }
 
