@@ -7,8 +7,8 @@ use std::io::{self, Read, Seek, Write};
 use std::path::{Path, PathBuf};
 
 /// What a run leaves; an earlier run was here if one of the first five is there.
-const FILES: [&str; 21] = [
-    "checkpoint/ensemble.part",
+const FILES: [&str; 20] = [
+    "checkpoint/ensemble.bin",
     "checkpoint/state.bin",
     "checkpoint/frames.bin",
     "summary.json",
@@ -27,7 +27,6 @@ const FILES: [&str; 21] = [
     "members.csv",
     "members.nc",
     "ensemble.json",
-    "ensemble.nc",
     LEFT,
 ];
 /// The list of the files that a finished run left ([`Folder::list`]).
