@@ -17,6 +17,7 @@
 
 from . import exact
 from ._case import Case
+from ._ensemble import Ensemble
 from ._errors import CaseError, ComputationError, GranflowWarning, MissingFileError, StaleViewError
 from ._memory import Raster
 from ._native import __version__
@@ -29,6 +30,7 @@ __all__ = [
     "CaseError",
     "Checkpoint",
     "ComputationError",
+    "Ensemble",
     "GranflowWarning",
     "MissingFileError",
     "Raster",
