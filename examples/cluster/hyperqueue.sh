@@ -14,4 +14,4 @@ folder=parts                        # on a file system that all workers see
 hq submit --wait --array "1-$parts" --cpus 2 --crash-limit 5 \
     sh -c "exec granflow ensemble $case --part \$HQ_TASK_ID/$parts --out $folder --threads 2 --quiet"
 
-granflow merge "$case" "$folder"/part-*-of-*.part --out ensemble
+granflow merge "$folder"/part-*-of-"$parts".bin --out ensemble

@@ -16,19 +16,24 @@
 """
 
 from . import exact
+from ._calibrate import Calibration, calibrate
 from ._case import Case
+from ._ensemble import Ensemble
 from ._errors import CaseError, ComputationError, GranflowWarning, MissingFileError, StaleViewError
 from ._memory import Raster
 from ._native import __version__
 from ._plot import Results
 from ._run import run
+from ._sensitivity import sensitivity
 from ._simulation import Checkpoint, Simulation, StateView
 
 __all__ = [
+    "Calibration",
     "Case",
     "CaseError",
     "Checkpoint",
     "ComputationError",
+    "Ensemble",
     "GranflowWarning",
     "MissingFileError",
     "Raster",
@@ -37,6 +42,8 @@ __all__ = [
     "StaleViewError",
     "StateView",
     "__version__",
+    "calibrate",
     "exact",
     "run",
+    "sensitivity",
 ]

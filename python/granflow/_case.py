@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 from collections.abc import Mapping
 from os import PathLike, fspath
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -45,22 +46,26 @@ class Case:
 
     def __init__(self, source: str | PathLike[str] | Mapping[str, Any] | None = None, /, **tables: Any) -> None:
         self._grounds: Raster | None = None
+        self._overrides: tuple[str, ...] = ()
+        self._member: tuple[str, ...] | None = None
+        self._held: dict[str, Any] = {}
         if isinstance(source, Mapping):
             tables = {**source, **tables}
         elif source is not None:
             if tables:
                 raise TypeError("give a file, a text or keywords, not two of them; Case.set changes a key")
-            self._native = _read(fspath(source), isinstance(source, str))
+            self._source, self._native = _read(fspath(source), isinstance(source, str))
             self._on_terrain = "[terrain]" in self._native.to_toml()
             return
         self._on_terrain = "terrain" in tables
         held: dict[str, Any] = {}
         plain = self._plain("", tables, held)
-        native = _native.Case.from_text(_toml.document(plain), "<keywords>")
+        self._source = (_toml.document(plain), "<keywords>")
+        native = _native.Case.from_text(*self._source)
         for name, given in held.items():
             native = _hold(native, name, given)
         native.to_toml()
-        self._native = native
+        self._native, self._held = native, held
 
     def set(self, key: str, value: Any) -> Case:
         """Changes a key, and returns the case.
@@ -79,12 +84,18 @@ class Case:
             native = self._native
             for name, given in held.items():
                 native = _hold(native, name, given)
-            native = native.with_override(f"{key}={_toml.value(plain)}")
+            override = f"{key}={_toml.value(plain)}"
+            native = native.with_override(override)
             native.to_toml()
         except BaseException:
             self._grounds = grounds
             raise
         self._native = native
+        if self._member is None:
+            self._overrides += (override,)
+        else:
+            self._member += (override,)
+        self._held = {**self._held, **held}
         return self
 
     def copy(self) -> Case:
@@ -116,6 +127,14 @@ class Case:
     def to_toml(self) -> str:
         """The case with its defaults, as TOML; angles are in radians."""
         return self._native.to_toml()
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        # A worker may be in another folder: a file goes along as its text, and what it names is looked for where it is.
+        text, name = self._source
+        if text is None:
+            text, name = Path(name).read_text(encoding="utf-8"), str(Path(name).absolute())
+        layers = (self._overrides, self._member)
+        return _again, (text, name, layers, self._held, self._grounds, self._on_terrain)
 
     def __repr__(self) -> str:
         return f"<granflow.Case\n{self.text}>"
@@ -182,10 +201,33 @@ def _values(given: Any) -> Any:
     return given.values if isinstance(given, (Raster, xr.DataArray)) else given
 
 
-def _read(source: str, may_be_text: bool) -> _native.Case:
+def _read(source: str, may_be_text: bool) -> tuple[tuple[str | None, str], _native.Case]:
+    """The text, if it is none of a file, and the name; and the case."""
     if may_be_text and ("\n" in source or ("=" in source and not os.path.exists(source))):
-        return _native.Case.from_text(source, "<text>")
-    return _native.Case.from_file(source)
+        return (source, "<text>"), _native.Case.from_text(source, "<text>")
+    return (None, source), _native.Case.from_file(source)
+
+
+def _again(
+    text: str,
+    name: str,
+    layers: tuple[tuple[str, ...], tuple[str, ...] | None],
+    held: dict[str, Any],
+    grounds: Raster | None,
+    on_terrain: bool,
+) -> Case:
+    """A case out of its parts, in another process."""
+    native, (overrides, member) = _native.Case.from_text(text, name), layers
+    for key, given in held.items():
+        native = _hold(native, key, given)
+    for override in overrides:
+        native = native.with_override(override)
+    if member is not None:
+        native = native.of_member(member)
+    case = Case.__new__(Case)
+    case._source, case._overrides, case._member, case._held = (text, name), overrides, member, held
+    case._grounds, case._on_terrain, case._native = grounds, on_terrain, native
+    return case
 
 
 def _hold(native: _native.Case, name: str, given: Any) -> _native.Case:

@@ -9,6 +9,8 @@ import numpy as np
 import xarray as xr
 from numpy.typing import ArrayLike, NDArray
 
+from ._tables import as_table
+
 if TYPE_CHECKING:
     from matplotlib.animation import FuncAnimation
     from matplotlib.axes import Axes
@@ -32,6 +34,11 @@ class Results:
         """The run in numbers: the keys of ``summary.json``; empty for a ``result.nc`` from the disk, beside which that stands."""
         summary: dict[str, Any] = json.loads(self._ds.attrs.get("summary", "{}"))
         return summary
+
+    @property
+    def members(self) -> Any:
+        """The table of the members of an ensemble: a ``pandas.DataFrame`` where pandas is installed, else a dictionary of arrays."""
+        return as_table(self._ds.attrs["members"])
 
     @property
     def is_plane(self) -> bool:

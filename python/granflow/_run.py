@@ -54,7 +54,8 @@ def _dataset(found: dict[str, Any]) -> xr.Dataset:
     for name, axes, values, attrs in found["variables"]:
         variables[name] = xr.Variable(axes, values, attrs, encoding={"_FillValue": values.dtype.type("nan")})
     dataset = xr.Dataset(variables, coords, found["attrs"])
-    dataset.attrs["summary"] = found["summary"]
+    if "summary" in found:
+        dataset.attrs["summary"] = found["summary"]
     return dataset
 
 

@@ -15,6 +15,8 @@ use super::source::Source;
 pub struct Case {
     source: Source,
     words: Arc<dyn Words>,
+    /// Of its ensemble nothing is asked.
+    alone: bool,
 }
 
 impl Case {
@@ -33,7 +35,7 @@ impl Case {
     pub fn parse_with(text: &str, name: &str, overrides: &[String]) -> Result<Self, CaseError> {
         let source = Source::read(name, text, overrides)?;
         let words = kinds::read(&source)?;
-        Ok(Self { source, words })
+        Ok(Self { source, words, alone: false })
     }
 
     /// Reads a case file.
@@ -60,7 +62,7 @@ impl Case {
         let files = Asked::new(files);
         let look = Look { source: &self.source, files: &files };
         let (mut run, kind) = self.words.check(&look)?;
-        if let Some((words, pressure)) = self.words.ensemble() {
+        if let Some((words, pressure)) = self.words.ensemble().filter(|_| !self.alone) {
             let ensemble = words.check(&look, pressure)?;
             for (place, change) in ensemble.trials() {
                 self.attempt(&look, &place, change)?;
@@ -78,12 +80,7 @@ impl Case {
     /// # Errors
     /// As [`Case::parse_with`] and [`Case::check`].
     pub fn check_with(&self, overrides: &[String], files: &dyn FileAccess) -> Result<Checked, CaseError> {
-        let files = Asked::new(files);
-        let source = self.source.with(overrides)?;
-        let words = kinds::read(&source)?;
-        let (mut run, kind) = words.check(&Look { source: &source, files: &files })?;
-        run.inputs = files.into_names();
-        Ok(Checked { run, kind })
+        self.member(overrides)?.check(files)
     }
 
     /// A value of an ensemble must be one that the case takes.
@@ -99,6 +96,22 @@ impl Case {
     #[must_use]
     pub fn text(&self) -> String {
         self.source.text()
+    }
+
+    /// One member of the ensemble of the case: overrides laid over it, and of the ensemble itself nothing is asked.
+    ///
+    /// # Errors
+    /// As [`Case::parse_with`].
+    pub fn member(&self, overrides: &[String]) -> Result<Self, CaseError> {
+        let source = self.source.with(overrides)?;
+        let words = kinds::read(&source)?;
+        Ok(Self { source, words, alone: true })
+    }
+
+    /// What [`Case::parse_with`] makes the same case of: the text of the file, and the overrides.
+    #[must_use]
+    pub fn parts(&self) -> (&str, Vec<String>) {
+        self.source.parts()
     }
 
     /// The case as one TOML document that computes the same: the file's own text where there are no overrides, else its

@@ -56,27 +56,31 @@ pub(crate) struct Words {
     /// Thresholds of which maps say how probable it is that they are exceeded.
     #[serde(default)]
     exceed: Exceed,
-    /// Percentiles of the peaks, in percent.
-    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    /// Percentiles of the peaks, in percent (default 5, 50, 95); an empty list for none.
+    #[serde(default = "usual_percentiles")]
     percentiles: Vec<f64>,
     /// Classes that a doubling of a value is divided into for the percentiles: 4, 8, 16, 32 or 64 (default 16).
     #[serde(skip_serializing_if = "Option::is_none")]
     classes: Option<u32>,
 }
 
-/// Thresholds of peaks.
+fn usual_percentiles() -> Vec<f64> {
+    vec![5.0, 50.0, 95.0]
+}
+
+/// Thresholds of peaks, each under the name of its map.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Exceed {
     /// Of the peak thickness normal to the bed.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
-    pub thickness: Vec<f64>,
+    pub peak_thickness: Vec<f64>,
     /// Of the peak speed along the bed.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
-    pub speed: Vec<f64>,
+    pub peak_speed: Vec<f64>,
     /// Of the peak dynamic pressure in kPa (terrain).
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
-    pub pressure: Vec<f64>,
+    pub peak_pressure: Vec<f64>,
 }
 
 /// An ensemble that was checked: how many runs, what each of them changes, and what is asked of all.
@@ -202,17 +206,19 @@ impl Words {
 
 impl Exceed {
     fn check(&self, look: &Look, pressure: bool) -> Result<(), CaseError> {
-        if !pressure && !self.pressure.is_empty() {
+        if !pressure && !self.peak_pressure.is_empty() {
             let message = "there is no pressure on a chute, only on [terrain]";
             return Err(look.fault(
-                "ensemble.exceed.pressure",
+                "ensemble.exceed.peak_pressure",
                 message,
                 "write thresholds of the speed instead",
             ));
         }
-        for (name, list) in
-            [("thickness", &self.thickness), ("speed", &self.speed), ("pressure", &self.pressure)]
-        {
+        for (name, list) in [
+            ("peak_thickness", &self.peak_thickness),
+            ("peak_speed", &self.peak_speed),
+            ("peak_pressure", &self.peak_pressure),
+        ] {
             for (k, threshold) in list.iter().enumerate() {
                 let key = format!("ensemble.exceed.{name}[{k}]");
                 look.usual(&key, Some(*threshold))?;

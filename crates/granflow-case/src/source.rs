@@ -160,6 +160,13 @@ impl Source {
         Ok(())
     }
 
+    /// The text of the file alone, and the overrides `key.path=value` that are laid over it.
+    pub(crate) fn parts(&self) -> (&str, Vec<String>) {
+        let mut pieces = self.pieces.iter();
+        let file = pieces.next().map_or("", |file| file.text.as_str());
+        (file, pieces.map(|piece| piece.name.trim_start_matches("--set ").to_owned()).collect())
+    }
+
     /// The folder of the case file.
     pub(crate) fn folder(&self) -> PathBuf {
         Path::new(self.name()).parent().map(Path::to_path_buf).unwrap_or_default()

@@ -8,7 +8,7 @@ use std::time::{Duration, Instant};
 
 use clap::Args;
 use granflow::Case;
-use granflow::ensemble::{Done, Ensemble, EnsembleError, Options, Progress};
+use granflow::ensemble::{Done, Ensemble, EnsembleError, Options, Progress, case_of_part};
 
 use crate::failure::{Failure, print, tell};
 use crate::interrupt;
@@ -32,9 +32,9 @@ pub struct Arguments {
     /// Computes one of several equal parts and writes it as a file for `granflow merge`
     #[arg(long, value_name = "K/N")]
     part: Option<Part>,
-    /// Where the results go (default: the case's name; parts into parts/ there)
-    #[arg(long, value_name = "DIR")]
-    out: Option<PathBuf>,
+    /// Where the results go, or the part
+    #[arg(long, value_name = "DIR", default_value = "ensemble")]
+    out: PathBuf,
     /// Changes a key of the case; may be repeated
     #[arg(long, value_name = "key.path=value")]
     set: Vec<String>,
@@ -55,18 +55,15 @@ pub struct Arguments {
 /// What the command line says about parts to be put together.
 #[derive(Debug, Args)]
 pub struct MergeArguments {
-    /// The case file that the parts were computed from
-    #[arg(value_name = "CASE.toml")]
-    case: PathBuf,
-    /// The parts
+    /// The parts, all of one ensemble; they know their case
     #[arg(required = true, value_name = "PART")]
     parts: Vec<PathBuf>,
-    /// Where the results go (default: the case's name)
-    #[arg(long, value_name = "DIR")]
-    out: Option<PathBuf>,
-    /// A change of a key of the case with which the parts were computed; may be repeated
-    #[arg(long, value_name = "key.path=value")]
-    set: Vec<String>,
+    /// Where the results go
+    #[arg(long, value_name = "DIR", default_value = "ensemble")]
+    out: PathBuf,
+    /// Where the case is now, if the files that it names are no longer where the parts were computed
+    #[arg(long, value_name = "CASE.toml")]
+    case: Option<PathBuf>,
     /// No notes
     #[arg(long, short)]
     quiet: bool,
@@ -105,7 +102,8 @@ impl FromStr for Part {
 
 /// Computes an ensemble or a part of it.
 pub fn ensemble(arguments: &Arguments) -> Result<(), Failure> {
-    let ensemble = begin(&arguments.case, &arguments.set, arguments.quiet)?;
+    let case = Case::read_with(&arguments.case, &arguments.set)?;
+    let ensemble = begin(&case, arguments.quiet)?;
     let all = ensemble.plan().members;
     let members = arguments.members.clone().map_or(0..all, |members| members.0);
     if members.end > all {
@@ -114,7 +112,7 @@ pub fn ensemble(arguments: &Arguments) -> Result<(), Failure> {
     }
     let stop = interrupt::listen()?;
     let mut shown = Shown::new(arguments.quiet);
-    let mut options = options(&arguments.case, arguments.out.as_ref(), arguments.quiet);
+    let mut options = options(&arguments.out, arguments.quiet);
     options.members = members;
     options.workers = arguments.threads.map_or(0, std::num::NonZeroUsize::get);
     (options.resume, options.keep_members) = (arguments.resume, arguments.keep_members);
@@ -122,9 +120,6 @@ pub fn ensemble(arguments: &Arguments) -> Result<(), Failure> {
         if count > all {
             let message = format!("--part {number}/{count}: the case has only {all} members");
             return Err(Failure::usage(message, "take at most as many parts as members"));
-        }
-        if arguments.out.is_none() {
-            options.directory.push("parts");
         }
         return match ensemble
             .into_part([number, count], &options, stop, &mut |progress| shown.show(progress))?
@@ -144,18 +139,18 @@ pub fn ensemble(arguments: &Arguments) -> Result<(), Failure> {
 
 /// Puts parts together.
 pub fn merge(arguments: &MergeArguments) -> Result<(), Failure> {
-    let ensemble = begin(&arguments.case, &arguments.set, arguments.quiet)?;
-    let options = options(&arguments.case, arguments.out.as_ref(), arguments.quiet);
+    let case = case_of_part(&arguments.parts[0], arguments.case.as_deref())?;
+    let ensemble = begin(&case, arguments.quiet)?;
+    let options = options(&arguments.out, arguments.quiet);
     let begun = Instant::now();
     let done = ensemble.merge(&arguments.parts, &options)?;
     finish(&ensemble, &done, &options, begun.elapsed(), arguments.quiet)
 }
 
-/// Reads the case and sets it up once.
-fn begin(case: &Path, overrides: &[String], quiet: bool) -> Result<Ensemble, Failure> {
-    let case = Case::read_with(case, overrides)?;
+/// Sets the case up once.
+fn begin(case: &Case, quiet: bool) -> Result<Ensemble, Failure> {
     let work = LongWork::new(quiet, SET_UP);
-    let ensemble = Ensemble::of(&case)?;
+    let ensemble = Ensemble::of(case)?;
     drop(work);
     if !quiet {
         ensemble.plane().domain.remarks().iter().for_each(|remark| tell(&format!("{remark}\n")));
@@ -163,10 +158,9 @@ fn begin(case: &Path, overrides: &[String], quiet: bool) -> Result<Ensemble, Fai
     Ok(ensemble)
 }
 
-fn options(case: &Path, out: Option<&PathBuf>, quiet: bool) -> Options {
-    let name = || case.file_stem().map_or_else(|| "result".into(), PathBuf::from);
+fn options(out: &Path, quiet: bool) -> Options {
     Options {
-        directory: out.cloned().unwrap_or_else(name),
+        directory: out.to_owned(),
         members: 0..0,
         workers: 0,
         resume: false,
@@ -251,10 +245,9 @@ impl From<EnsembleError> for Failure {
             EnsembleError::Output(_) | EnsembleError::Raster(_) | EnsembleError::Figure(_) => {
                 Self::File(error.to_string())
             }
-            EnsembleError::Parts(message) => Self::usage(
-                message,
-                "granflow merge CASE.toml PART ... takes every part of one ensemble once",
-            ),
+            EnsembleError::Parts(message) => {
+                Self::usage(message, "granflow merge PART ... takes every part of one ensemble once")
+            }
             EnsembleError::Threads(_) => Self::usage(error.to_string(), "try a smaller --threads"),
             EnsembleError::AllFailed { .. } => Self::Computation(error.to_string()),
         }

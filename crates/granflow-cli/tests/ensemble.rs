@@ -21,7 +21,7 @@ end = 12.0
 [ensemble]
 members = 12
 vary."material.friction.coulomb.mu" = { uniform = [0.25, 0.4] }
-exceed.thickness = [0.5]
+exceed.peak_thickness = [0.5]
 percentiles = [50]
 "#;
 
@@ -53,27 +53,27 @@ fn one_command_gives_maps_tables_and_figures() {
     );
     let output = granflow(folder.path(), &["ensemble", "slab.toml", "--keep-members", "--threads", "2"]);
     assert!(output.status.success(), "{}", told(&output));
-    assert!(said(&output).starts_with("12 members computed, 0 failed: slab ("), "{}", said(&output));
+    assert!(said(&output).starts_with("12 members computed, 0 failed: ensemble ("), "{}", said(&output));
     for name in [
         "members.csv",
         "members.nc",
-        "ensemble.nc",
+        "result.nc",
         "ensemble.json",
-        "figures/exceedance_thickness_0_5.png",
+        "figures/exceedance_peak_thickness_0_5.png",
         "members/000011.nc",
     ] {
-        assert!(folder.path().join("slab").join(name).is_file(), "{name}");
+        assert!(folder.path().join("ensemble").join(name).is_file(), "{name}");
     }
-    let table = fs::read_to_string(folder.path().join("slab/members.csv")).unwrap();
+    let table = fs::read_to_string(folder.path().join("ensemble/members.csv")).unwrap();
     assert_eq!(table.lines().count(), 13);
-    assert!(table.starts_with("member,material.friction.coulomb.mu,time,steps,"), "{table}");
+    assert!(table.starts_with("member,status,material.friction.coulomb.mu,cells,steps,time,"), "{table}");
     // The same command finds all done; a run of the case itself moves the ensemble aside.
     let again = granflow(folder.path(), &["ensemble", "slab.toml"]);
     assert!(told(&again).contains("12 of 12 members"), "{}", told(&again));
-    let run = granflow(folder.path(), &["run", "slab.toml"]);
+    let run = granflow(folder.path(), &["run", "slab.toml", "--out", "ensemble"]);
     assert!(run.status.success() && told(&run).contains("previous"), "{}", told(&run));
-    assert!(folder.path().join("slab/previous/ensemble.nc").exists());
-    assert!(!folder.path().join("slab/ensemble.nc").exists());
+    assert!(folder.path().join("ensemble/previous/members.csv").exists());
+    assert!(!folder.path().join("ensemble/members.csv").exists());
 }
 
 #[test]
@@ -86,17 +86,17 @@ fn parts_of_any_order_are_the_whole() {
         let output = granflow(folder.path(), &["ensemble", "slab.toml", "--part", part, "-q"]);
         assert!(output.status.success(), "{}", told(&output));
     }
-    let part = |k: u32| format!("slab/parts/part-000{k}-of-0005.part");
+    let part = |k: u32| format!("ensemble/part-{k}-of-5.bin");
     let [one, two, three, four, five] = [1, 2, 3, 4, 5].map(part);
     let merge = |parts: &[&str], out: &str| {
-        let mut arguments = vec!["merge", "slab.toml"];
+        let mut arguments = vec!["merge"];
         arguments.extend(parts);
         arguments.extend(["--out", out]);
         granflow(folder.path(), &arguments)
     };
     let output = merge(&[&four, &one, &five, &three, &two], "merged");
     assert!(output.status.success(), "{}", told(&output));
-    for name in ["members.csv", "ensemble.json", "checkpoint/ensemble.part", "figures/mean_speed.png"] {
+    for name in ["members.csv", "ensemble.json", "checkpoint/ensemble.bin", "figures/mean_peak_speed.png"] {
         let [whole, merged] = ["whole", "merged"].map(|out| fs::read(at(out).join(name)).unwrap());
         assert!(whole == merged, "{name}");
     }
@@ -109,13 +109,15 @@ fn parts_of_any_order_are_the_whole() {
     assert!(
         told_of(&[&one, &two, &four, &five]).contains("2 members are in no part: 4..6") || !at("no").exists()
     );
-    refused(
-        folder.path(),
-        &["merge", "slab.toml", &one, "--set", "title=other"],
-        4,
-        &["another case", "--set"],
-    );
-    refused(folder.path(), &["merge", "slab.toml", "slab.toml"], 4, &["no part of an ensemble"]);
+    // A part knows its case: it is used without the file, and after that was edited.
+    fs::write(at("slab.toml"), SLAB.replace("seed", "# seed").replace("A slab", "Another slab")).unwrap();
+    let output = merge(&[&five, &four, &three, &two, &one], "later");
+    assert!(output.status.success(), "{}", told(&output));
+    let other = granflow(folder.path(), &["ensemble", "slab.toml", "--part", "1/5", "--out", "other", "-q"]);
+    assert!(other.status.success(), "{}", told(&other));
+    refused(folder.path(), &["merge", &two, "other/part-1-of-5.bin"], 4, &["another case", "--set"]);
+    refused(folder.path(), &["merge", "slab.toml"], 4, &["no part of an ensemble"]);
+    refused(folder.path(), &["merge"], 2, &["<PART>"]);
 }
 
 #[test]
@@ -131,7 +133,7 @@ fn what_makes_no_sense_is_refused_with_the_cure() {
     refused(folder.path(), &["ensemble", "slab.toml", "--set", "ensemble.members=0"], 2, &["expected 1 to"]);
     let vary = r#"ensemble.vary={"material.friction.coulomb.mu"={normal={mean=0.1,sd=0.1}}}"#;
     refused(folder.path(), &["ensemble", "slab.toml", "--set", vary], 2, &["does not take", "min and max"]);
-    assert!(!folder.path().join("slab").exists(), "nothing was begun");
+    assert!(!folder.path().join("ensemble").exists(), "nothing was begun");
     let pile = "model = \"hadeler_kuttler\"\n[grid]\nx = { from = 0, to = 1, cells = 10 }\n[time]\nend = 1\n[ensemble]\nmembers = 2\n";
     fs::write(folder.path().join("pile.toml"), pile).unwrap();
     refused(folder.path(), &["ensemble", "pile.toml"], 2, &["`ensemble` belongs to the model savage_hutter"]);
@@ -148,7 +150,7 @@ fn members_that_fail_are_named_and_all_of_them_are_exit_3() {
     let told = told(&output);
     assert!(output.status.success(), "{told}");
     assert!(
-        told.contains("(seed 0, scheme.step=0.5) failed:") && said(&output).contains(" failed: slab"),
+        told.contains("(seed 0, scheme.step=0.5) failed:") && said(&output).contains(" failed: ensemble"),
         "{told}"
     );
     let set = "ensemble.vary={\"scheme.step\"={choice=[0.4,0.5]}}";
@@ -185,8 +187,8 @@ fn a_signal_keeps_what_is_done_and_the_same_command_goes_on() {
         return; // a fast machine had done all
     }
     assert_eq!(status.code(), Some(130));
-    assert!(folder.path().join("slab/checkpoint/ensemble.part").exists());
-    assert!(!folder.path().join("slab/ensemble.nc").exists());
+    assert!(folder.path().join("ensemble/checkpoint/ensemble.bin").exists());
+    assert!(!folder.path().join("ensemble/result.nc").exists());
     let output = granflow(folder.path(), &["ensemble", "slab.toml", "--resume"]);
     assert!(output.status.success(), "{}", told(&output));
     assert!(!told(&output).starts_with("0 of 60"), "{}", told(&output));

@@ -14,6 +14,8 @@ use std::path::PathBuf;
 pub struct Case {
     place: Place,
     overrides: Vec<String>,
+    /// What makes it one member of its ensemble.
+    member: Option<Vec<String>>,
     inputs: Inputs,
 }
 
@@ -25,12 +27,25 @@ enum Place {
 }
 
 impl Case {
+    fn of(place: Place) -> Case {
+        Case { place, overrides: Vec::new(), member: None, inputs: Inputs::default() }
+    }
+
     fn read(&self, py: Python<'_>) -> PyResult<granflow::Case> {
         let case = match &self.place {
             Place::File(path) => granflow::Case::read_with(path, &self.overrides),
             Place::Text { text, name } => granflow::Case::parse_with(text, name, &self.overrides),
         };
+        let case = match &self.member {
+            Some(changes) => case.and_then(|case| case.member(changes)),
+            None => case,
+        };
         case.map_err(|error| of_case(py, &error))
+    }
+
+    /// The case, not checked, and what it may name in memory.
+    pub fn parts(&self, py: Python<'_>) -> PyResult<(granflow::Case, Inputs)> {
+        Ok((self.read(py)?, self.inputs.clone()))
     }
 
     /// The case, checked.
@@ -44,20 +59,26 @@ impl Case {
     /// From a file.
     #[staticmethod]
     fn from_file(path: PathBuf) -> Case {
-        Case { place: Place::File(path), overrides: Vec::new(), inputs: Inputs::default() }
+        Self::of(Place::File(path))
     }
 
     /// From a text that messages call `name`.
     #[staticmethod]
     fn from_text(text: String, name: String) -> Case {
-        Case { place: Place::Text { text, name }, overrides: Vec::new(), inputs: Inputs::default() }
+        Self::of(Place::Text { text, name })
     }
 
     /// The same with `key.path=value` laid over it, the value as TOML.
     fn with_override(&self, assignment: String) -> Case {
         let mut case = self.clone();
-        case.overrides.push(assignment);
+        // What makes a member is laid over the case; what is set later, over both.
+        case.member.as_mut().unwrap_or(&mut case.overrides).push(assignment);
         case
+    }
+
+    /// One member of its ensemble, by the overrides that make it.
+    fn of_member(&self, changes: Vec<String>) -> Case {
+        Case { member: Some(changes), ..self.clone() }
     }
 
     /// The same with a file in memory.

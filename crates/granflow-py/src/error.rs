@@ -2,6 +2,7 @@
 
 use granflow::StartError;
 use granflow::case::{CaseError, CaseErrorKind};
+use granflow::ensemble::EnsembleError;
 use granflow::raster::RasterError;
 use granflow::release::ReleaseError;
 use granflow::session::RunError;
@@ -66,6 +67,19 @@ pub fn of_start(py: Python<'_>, error: &StartError) -> PyErr {
         },
         StartError::Memory { .. } => PyMemoryError::new_err(text),
         StartError::Build(_) | StartError::Feature { .. } => PyValueError::new_err(text),
+    }
+}
+
+/// Why an ensemble could not be computed or put together.
+pub fn of_ensemble(py: Python<'_>, error: &EnsembleError) -> PyErr {
+    match error {
+        EnsembleError::Case(error) => of_case(py, error),
+        EnsembleError::Start(error) => of_start(py, error),
+        EnsembleError::AllFailed { .. } => of_computation(py, error.to_string(), f64::NAN),
+        EnsembleError::Raster(_) | EnsembleError::Figure(_) => PyOSError::new_err(error.to_string()),
+        EnsembleError::Output(_) | EnsembleError::Parts(_) | EnsembleError::Threads(_) => {
+            PyValueError::new_err(error.to_string())
+        }
     }
 }
 

@@ -5,6 +5,7 @@
 #![cfg(feature = "extension")]
 
 mod case;
+mod ensemble;
 mod error;
 mod exact;
 mod interrupt;
@@ -20,6 +21,8 @@ use pyo3::prelude::*;
 mod _native {
     #[pymodule_export]
     use super::case::Case;
+    #[pymodule_export]
+    use super::ensemble::{Ensemble, Members};
     #[pymodule_export]
     use super::exact::{
         flat_dam_break, flat_dam_break_front, granular_jump, parabolic_cap, pile_on_disc, pile_on_rectangle,

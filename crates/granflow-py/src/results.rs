@@ -1,7 +1,7 @@
 //! What a run left, as arrays and plain values of Python. A series of the run becomes an array without a copy.
 
 use granflow::output::Precision;
-use granflow::output::netcdf::{Values, Variable};
+use granflow::output::netcdf::{Dataset, Values, Variable};
 use granflow::sinks::{Kept, Numbers};
 use numpy::{Element, PyArray1, PyArrayMethods, PyUntypedArrayMethods};
 use pyo3::exceptions::{PyRuntimeError, PyValueError};
@@ -21,58 +21,83 @@ struct Head {
     masked: bool,
 }
 
-/// `coords` and `variables` as lists of (name, dimensions, array, attributes), `attrs`, the attributes of `crs` where there is one, and
-/// `summary` as JSON.
+/// What a run left: as [`of_dataset`], and `summary` as JSON.
 pub fn results(py: Python<'_>, mut kept: Kept) -> PyResult<Bound<'_, PyDict>> {
-    let (results, coords, attributes) = (PyDict::new(py), PyList::empty(py), PyDict::new(py));
-    let (mut heads, mut holes) = (Vec::new(), Vec::new());
-    {
+    let (results, heads, holes) = {
         let dataset =
             kept.dataset("granflow.run").map_err(|error| PyValueError::new_err(error.to_string()))?;
-        for axis in &dataset.axes {
-            let values = PyArray1::from_slice(py, &axis.values);
-            coords.append((&axis.name, [&axis.name], values, described(py, &axis.described())?))?;
-        }
-        for (name, value) in dataset.described() {
-            attributes.set_item(name, value)?;
-        }
-        if let Some(terrain) = dataset.terrain {
-            holes = (0..terrain.len()).filter(|cell| terrain[*cell].is_nan()).collect();
-        }
-        if let Some(crs) = &dataset.crs {
-            let own = described(py, &crs.described())?;
-            crs.number().map_or(Ok(()), |code| own.set_item("epsg", code))?;
-            results.set_item("crs", own)?;
-        }
-        for variable in &dataset.variables {
-            let size = |name: &String| dataset.axes.iter().find(|axis| axis.name == *name);
-            let shape: Vec<usize> =
-                variable.axes.iter().filter_map(size).map(|axis| axis.values.len()).collect();
-            let length = shape.iter().skip(usize::from(variable.axes[0] == "time")).product();
-            let masked = dataset.mask(variable, length).is_some();
-            let attributes = dataset.described_variable(variable);
-            heads.push(head(variable, attributes, shape, masked));
-        }
+        described_all(py, &dataset)?
+    };
+    let summary = serde_json::to_string_pretty(&kept.summary);
+    filled(py, &results, heads, &holes, |series| taken(&mut kept, series))?;
+    results.set_item("summary", summary.map_err(|error| PyRuntimeError::new_err(error.to_string()))?)?;
+    Ok(results)
+}
+
+/// `coords` and `variables` as lists of (name, dimensions, array, attributes), `attrs`, the attributes of `crs` where there is one.
+pub fn of_dataset<'py>(py: Python<'py>, dataset: &Dataset) -> PyResult<Bound<'py, PyDict>> {
+    let (results, heads, holes) = described_all(py, dataset)?;
+    let none = |series: &str| Err(PyRuntimeError::new_err(format!("there is no series {series}")));
+    filled(py, &results, heads, &holes, none)?;
+    Ok(results)
+}
+
+/// All but the variables; these without their numbers; the cells without terrain.
+fn described_all<'py>(
+    py: Python<'py>,
+    dataset: &Dataset,
+) -> PyResult<(Bound<'py, PyDict>, Vec<Head>, Vec<usize>)> {
+    let (results, coords, attributes) = (PyDict::new(py), PyList::empty(py), PyDict::new(py));
+    for axis in &dataset.axes {
+        let values = PyArray1::from_slice(py, &axis.values);
+        coords.append((&axis.name, [&axis.name], values, described(py, &axis.described())?))?;
     }
+    for (name, value) in dataset.described() {
+        attributes.set_item(name, value)?;
+    }
+    let holes = dataset
+        .terrain
+        .map_or(Vec::new(), |terrain| (0..terrain.len()).filter(|cell| terrain[*cell].is_nan()).collect());
+    if let Some(crs) = &dataset.crs {
+        let own = described(py, &crs.described())?;
+        crs.number().map_or(Ok(()), |code| own.set_item("epsg", code))?;
+        results.set_item("crs", own)?;
+    }
+    let mut heads = Vec::new();
+    for variable in &dataset.variables {
+        let size = |name: &String| dataset.axes.iter().find(|axis| axis.name == *name);
+        let shape: Vec<usize> = variable.axes.iter().filter_map(size).map(|axis| axis.values.len()).collect();
+        let length = shape.iter().skip(usize::from(variable.axes[0] == "time")).product();
+        let masked = dataset.mask(variable, length).is_some();
+        heads.push(head(variable, dataset.described_variable(variable), shape, masked));
+    }
+    results.set_item("coords", coords)?;
+    results.set_item("attrs", attributes)?;
+    Ok((results, heads, holes))
+}
+
+/// Puts the variables among the results, those of a series by what `of_series` gives.
+fn filled(
+    py: Python<'_>,
+    results: &Bound<'_, PyDict>,
+    heads: Vec<Head>,
+    holes: &[usize],
+    mut of_series: impl FnMut(&str) -> PyResult<Numbers>,
+) -> PyResult<()> {
     let variables = PyList::empty(py);
     for head in heads {
         let numbers = match &head.series {
-            Ok(series) => taken(&mut kept, series)?,
+            Ok(series) => of_series(series)?,
             Err(values) => rounded(values, head.precision),
         };
-        let holes: &[usize] = if head.masked { &holes } else { &[] };
+        let holes: &[usize] = if head.masked { holes } else { &[] };
         let array = match numbers {
             Numbers::F32(values) => shaped(py, values, holes, f32::NAN, &head.shape)?,
             Numbers::F64(values) => shaped(py, values, holes, f64::NAN, &head.shape)?,
         };
         variables.append((&head.name, &head.axes, array, described(py, &head.attributes)?))?;
     }
-    results.set_item("coords", coords)?;
-    results.set_item("variables", variables)?;
-    results.set_item("attrs", attributes)?;
-    let summary = serde_json::to_string_pretty(&kept.summary);
-    results.set_item("summary", summary.map_err(|error| PyRuntimeError::new_err(error.to_string()))?)?;
-    Ok(results)
+    results.set_item("variables", variables)
 }
 
 fn head(variable: &Variable, attributes: Vec<(&'static str, &str)>, shape: Vec<usize>, masked: bool) -> Head {

@@ -71,6 +71,13 @@ impl Case {
     pub fn check_with(&self, inputs: &Inputs) -> Result<Checked, CaseError> {
         Ok(Checked(self.0.check(&Access(inputs))?, inputs.clone()))
     }
+    /// One member of the ensemble of the case: overrides laid over it, and of the ensemble itself nothing is asked.
+    ///
+    /// # Errors
+    /// As [`Case::read_with`].
+    pub fn member(&self, overrides: &[String]) -> Result<Case, CaseError> {
+        self.0.member(overrides).map(Case)
+    }
     /// The case with overrides laid over it, as a member of its ensemble has them, checked.
     ///
     /// # Errors

@@ -35,6 +35,7 @@ pub use granflow_case::Member;
 pub use granflow_case::ensemble::{Column, Drawn, Sampling};
 pub use maps::{Map, Measure};
 pub use member::{Computed, Outcome};
+pub use part::case_of_part;
 pub use reduced::Reduced;
 pub use workers::Progress;
 
@@ -165,9 +166,9 @@ impl Ensemble {
     #[must_use]
     pub fn empty(&self) -> Reduced {
         let thresholds = |name: &str| match name {
-            "peak_thickness" => self.plan.exceed.thickness.as_slice(),
-            "peak_speed" => &self.plan.exceed.speed,
-            _ => &self.plan.exceed.pressure,
+            "peak_thickness" => self.plan.exceed.peak_thickness.as_slice(),
+            "peak_speed" => &self.plan.exceed.peak_speed,
+            _ => &self.plan.exceed.peak_pressure,
         };
         let maps: Vec<_> = self.names.iter().map(|name| (name.as_str(), thresholds(name))).collect();
         let classes = (!self.plan.percentiles.is_empty()).then_some(self.plan.classes);

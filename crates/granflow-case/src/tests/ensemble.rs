@@ -115,9 +115,9 @@ fn bad_tables_are_refused_with_place_and_cure() {
         (angle("{ choice = [0.3] }").replace('8', "70000"), "latin_hypercube"),
         (angle("{ choice = [0.3] }\nclasses = 7"), "allowed: 4, 8"),
         (angle("{ choice = [0.3] }\npercentiles = [100]"), "between 0 and 100"),
-        (angle("{ choice = [0.3] }\nexceed.pressure = [1]"), "no pressure on a chute"),
-        (angle("{ choice = [0.3] }\nexceed.speed = [1, 1]"), "stands here twice"),
-        (angle("{ choice = [0.3] }\nexceed.speed = [-1]"), "expected a number > 0"),
+        (angle("{ choice = [0.3] }\nexceed.peak_pressure = [1]"), "no pressure on a chute"),
+        (angle("{ choice = [0.3] }\nexceed.peak_speed = [1, 1]"), "stands here twice"),
+        (angle("{ choice = [0.3] }\nexceed.peak_speed = [-1]"), "expected a number > 0"),
         (format!("{ANGLE} = {{ choice = [0.3] }}"), "members"),
     ];
     for (text, part) in table {

@@ -25,7 +25,7 @@ impl Ensemble {
         let (colours, high) = match (map.measure, map.quantity.as_str()) {
             (Measure::Exceedance(_), _) => (Colours::Viridis, 1.0),
             (Measure::Members, _) => (Colours::Viridis, largest),
-            (_, "thickness") => (Colours::Thickness, largest),
+            (_, "peak_thickness") => (Colours::Thickness, largest),
             _ => (Colours::Speed, largest),
         };
         let unit = match map.units {

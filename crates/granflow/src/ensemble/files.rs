@@ -34,8 +34,8 @@ impl Ensemble {
         self.write_numbers(reduced, &maps, &at("ensemble.json"))?;
         if wanted("netcdf") {
             self.write_member_file(reduced, &at("members.nc"), command)?;
-            self.write_maps(&maps, &at("ensemble.nc"), command)?;
-            files.extend([at("members.nc"), at("ensemble.nc")]);
+            self.write_maps(&maps, &at("result.nc"), command)?;
+            files.extend([at("members.nc"), at("result.nc")]);
         }
         if wanted("geotiff") {
             files.extend(self.write_rasters(&maps, &at("rasters"))?);
@@ -51,8 +51,14 @@ impl Ensemble {
         Ok(files)
     }
 
-    /// `ensemble.nc`: the maps, and the bed.
+    /// `result.nc`: the maps, and the bed.
     fn write_maps(&self, maps: &[Map], path: &Path, command: &str) -> Result<(), EnsembleError> {
+        Ok(self.dataset(maps, command).write(path, None)?)
+    }
+
+    /// What `result.nc` holds of these maps; `command` is its history.
+    #[must_use]
+    pub fn dataset(&self, maps: &[Map], command: &str) -> Dataset<'_> {
         let plane = self.plane();
         let (units, projected) = (plane.domain.units(), plane.domain.projected());
         let along = |axis, name: &str, places: &[f64]| {
@@ -83,7 +89,7 @@ impl Ensemble {
             });
         }
         let (crs, terrain) = (plane.domain.crs(), plane.domain.elevation());
-        Ok(Dataset { axes, variables, crs, terrain, ..self.about(command) }.write(path, None)?)
+        Dataset { axes, variables, crs, terrain, ..self.about(command) }
     }
 
     /// `rasters/*.tif`, and beside each the style in which QGIS opens it.

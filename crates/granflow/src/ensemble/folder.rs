@@ -9,7 +9,7 @@ use std::path::{Path, PathBuf};
 use std::sync::atomic::AtomicBool;
 
 /// Where what is done is kept.
-const KEPT: &str = "checkpoint/ensemble.part";
+const KEPT: &str = "checkpoint/ensemble.bin";
 
 /// What is not in the case: where, which members, on how many cores.
 #[derive(Debug, Clone)]
@@ -114,9 +114,9 @@ impl Ensemble {
         hear: &mut (dyn FnMut(Progress) + Send),
     ) -> Result<Option<PathBuf>, EnsembleError> {
         let members = self.members_of_part([number, count]);
-        let name = format!("part-{number:04}-of-{count:04}");
+        let name = format!("part-{number}-of-{count}");
         let [path, under_way] =
-            ["part", "begun"].map(|ending| options.directory.join(format!("{name}.{ending}")));
+            ["bin", "begun"].map(|ending| options.directory.join(format!("{name}.{ending}")));
         let begun = [&path, &under_way].into_iter().find_map(|path| self.read(path).ok());
         let keep = |reduced: &Reduced| self.write(reduced, &under_way);
         let begun = begun.unwrap_or_else(|| self.empty());

@@ -27,7 +27,7 @@ pub struct Map {
     pub long_name: String,
     /// Units after UDUNITS.
     pub units: &'static str,
-    /// The quantity without `peak_`: "thickness", "speed", "pressure"; empty where it is none of one.
+    /// The map of a member that it is of, as `peak_thickness`; empty where it is of none.
     pub quantity: String,
     /// What it shows.
     pub measure: Measure,
@@ -43,7 +43,7 @@ impl Ensemble {
         let count = reduced.computed();
         let threshold = self.run.output.threshold;
         let mut maps = vec![Map {
-            name: "members_reached".to_owned(),
+            name: "count".to_owned(),
             long_name: format!("number of members, of {count}, with a layer thicker than {threshold}"),
             units: "1",
             quantity: String::new(),
@@ -63,14 +63,15 @@ impl Ensemble {
             name: name.to_owned(),
             long_name: quantity.map_or("", |quantity| quantity.long_name).to_owned(),
             units: quantity.map_or("1", |quantity| quantity.units_in(self.plane.domain.units())),
-            quantity: name.trim_start_matches("peak_").to_owned(),
+            quantity: name.to_owned(),
             measure: Measure::Largest,
             values: values.to_vec(),
         }
     }
 
     fn of_peaks(&self, peaks: &Peaks, reduced: &Reduced, count: u32) -> Vec<Map> {
-        let quantity = peaks.name.trim_start_matches("peak_").to_owned();
+        let quantity = peaks.name.clone();
+        let words = quantity.replace('_', " ");
         let units = self.plane.model().quantity(&peaks.name);
         let units = units.map_or("1", |quantity| quantity.units_in(self.plane.domain.units()));
         let unit = if units == "1" { String::new() } else { format!(" {units}") };
@@ -86,7 +87,7 @@ impl Ensemble {
         for (threshold, above) in peaks.thresholds.iter().zip(&peaks.above) {
             maps.push(map(
                 format!("exceedance_{quantity}_{}", spelt(*threshold)),
-                format!("share of the members whose peak {quantity} exceeded {threshold}{unit}"),
+                format!("share of the members whose {words} exceeded {threshold}{unit}"),
                 "1",
                 Measure::Exceedance(*threshold),
                 at(reduced, |cell| f64::from(above[cell]) / f64::from(count)),
@@ -95,8 +96,8 @@ impl Ensemble {
         if let Some(bits) = reduced.bits {
             for percent in &self.plan.percentiles {
                 maps.push(map(
-                    format!("percentile_{quantity}_{}", spelt(*percent)),
-                    format!("peak {quantity} that {percent} % of the members do not exceed"),
+                    format!("p{}_{quantity}", of_two_digits(*percent)),
+                    format!("{words} that {percent} % of the members do not exceed"),
                     units,
                     Measure::Percentile(*percent),
                     at(reduced, |cell| {
@@ -108,14 +109,14 @@ impl Ensemble {
         }
         maps.push(map(
             format!("mean_{quantity}"),
-            format!("mean peak {quantity} of all members, 0 for those that did not come"),
+            format!("mean {words} of all members, 0 for those that did not come"),
             units,
             Measure::Mean,
             at(reduced, |cell| peaks.mean(cell, count)),
         ));
         maps.push(map(
-            format!("largest_{quantity}"),
-            format!("largest peak {quantity} of all members"),
+            format!("max_{quantity}"),
+            format!("largest {words} of all members"),
             units,
             Measure::Largest,
             at(reduced, |cell| peaks.largest[cell]),
@@ -128,6 +129,12 @@ impl Ensemble {
 fn at(reduced: &Reduced, value: impl Fn(usize) -> f64) -> Vec<f64> {
     let of = |(cell, reached): (usize, &u32)| if *reached > 0 { value(cell) } else { f64::NAN };
     reduced.reached.iter().enumerate().map(of).collect()
+}
+
+/// A percentage as a part of a name: 5 is 05, 2.5 is 02_5.
+fn of_two_digits(percent: f64) -> String {
+    let spelt = spelt(percent);
+    if percent < 10.0 { format!("0{spelt}") } else { spelt }
 }
 
 /// A number as a part of a name: 0.5 is 0_5.

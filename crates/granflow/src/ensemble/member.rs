@@ -7,32 +7,37 @@ use crate::sinks::{Sink, Stop};
 use crate::stop_reason::StopReason;
 use crate::{Checked, StartError};
 use granflow_case::Member;
+use std::collections::BTreeMap;
 use std::sync::atomic::AtomicBool;
 use std::time::Instant;
 
 /// What is kept of a member beside its maps: a name, its unit in SI, and where it is found.
 pub(super) type Scalar = (&'static str, &'static str, fn(&Summary) -> f64);
 
-/// The numbers of a member, in the order of the columns.
-pub(super) const SCALARS: [Scalar; 14] = [
-    ("time", "s", |summary| summary.time),
+/// The numbers that `summary.json` always has, in its order, but for those that say how fast it was computed: they are no results, and
+/// differ from one time to the next.
+pub(super) const SCALARS: [Scalar; 15] = [
+    ("cells", "1", |summary| summary.cells as f64),
     ("steps", "1", |summary| summary.steps as f64),
+    ("time", "s", |summary| summary.time),
     ("stopping_time", "s", |summary| summary.stopping_time.unwrap_or(f64::NAN)),
-    ("volume_initial", "m3", |summary| summary.mass_initial),
-    ("volume_in", "m3", |summary| summary.mass_in),
-    ("volume_out", "m3", |summary| summary.mass_out),
-    ("volume_final", "m3", |summary| summary.mass_final),
+    ("threshold", "m", |summary| summary.threshold.unwrap_or(f64::NAN)),
+    ("mass_initial", "m3", |summary| summary.mass_initial),
+    ("mass_final", "m3", |summary| summary.mass_final),
+    ("mass_in", "m3", |summary| summary.mass_in),
+    ("mass_out", "m3", |summary| summary.mass_out),
     ("mass_error", "1", |summary| summary.mass_error),
+    ("film_volume", "m3", |summary| summary.film_volume),
+    ("max_speed_final", "m s-1", |summary| summary.max_speed_final),
+    ("max_speed", "m s-1", |summary| summary.max_speed),
     ("runout", "m", |summary| summary.runout.unwrap_or(f64::NAN)),
     ("reach_angle", "degree", |summary| summary.reach_angle.unwrap_or(f64::NAN)),
-    ("max_speed", "m s-1", |summary| summary.max_speed),
-    ("peak_thickness_max", "m", |summary| extra(summary, "peak_thickness_max")),
-    ("peak_pressure_max", "kPa", |summary| extra(summary, "peak_pressure_max")),
-    ("deposit_max", "m", |summary| extra(summary, "deposit_max")),
 ];
 
-fn extra(summary: &Summary, key: &str) -> f64 {
-    summary.extra(key).unwrap_or(f64::NAN)
+/// The numbers of a summary beyond the fixed ones.
+fn further(summary: &Summary) -> BTreeMap<String, f64> {
+    let numbers = summary.extra.iter().filter(|(_, value)| value.is_number() || value.is_null());
+    numbers.map(|(name, value)| (name.clone(), value.as_f64().unwrap_or(f64::NAN))).collect()
 }
 
 /// A member that was computed, or why it could not be.
@@ -51,8 +56,10 @@ pub struct Computed {
     pub reason: StopReason,
     /// The maps that are added up, not a number where it did not come.
     pub(super) maps: Vec<Vec<f64>>,
-    /// Its numbers.
+    /// Its numbers, those of [`SCALARS`].
     pub(super) scalars: Vec<f64>,
+    /// Its further numbers by name.
+    pub(super) further: BTreeMap<String, f64>,
     /// Seconds in steps.
     pub stepping_seconds: f64,
 }
@@ -62,7 +69,7 @@ pub struct Computed {
 pub(super) struct Row {
     /// The values that it had.
     pub values: Vec<f64>,
-    /// Why it ended and its numbers, or why it failed.
+    /// Why it ended and its numbers, those of [`SCALARS`] and then the further ones that the members have; or why it failed.
     pub ended: Result<(StopReason, Vec<f64>), String>,
 }
 
@@ -114,5 +121,6 @@ pub(super) fn compute(
     });
     let maps = taken.collect::<Result<_, _>>()?;
     let scalars = SCALARS.iter().map(|(_, _, of)| of(&summary)).collect();
-    Ok(Some(Computed { reason, maps, scalars, stepping_seconds: summary.stepping_seconds }))
+    let further = further(&summary);
+    Ok(Some(Computed { reason, maps, scalars, further, stepping_seconds: summary.stepping_seconds }))
 }

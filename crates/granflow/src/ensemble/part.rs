@@ -4,11 +4,25 @@ use super::classes::Classes;
 use super::member::{Row, SCALARS};
 use super::reduced::{Peaks, Reduced};
 use super::{Ensemble, EnsembleError};
-use crate::output::part::{self, Header};
+use crate::case::Case;
+use crate::output::part::{self, Header, Written};
 use crate::output::{Error, whole_file};
 use crate::stop_reason::StopReason;
 use std::io::{self, Write};
 use std::path::Path;
+
+/// The case that a part was computed from, as the part itself has it; `moved` says where its file is now, if elsewhere: what the
+/// case names is looked for beside that.
+///
+/// # Errors
+/// [`EnsembleError::Output`] for what is no part; [`EnsembleError::Case`].
+pub fn case_of_part(part: &Path, moved: Option<&Path>) -> Result<Case, EnsembleError> {
+    let bytes =
+        std::fs::read(part).map_err(|source| Error::Io { path: part.into(), action: "read", source })?;
+    let Written { path, text, overrides } = part::open(part, &bytes)?.0.written;
+    let name = moved.unwrap_or(&path).display().to_string();
+    Ok(Case::parse_with(&text, &name, &overrides)?)
+}
 
 impl Ensemble {
     /// Writes what was added up as a file.
@@ -62,6 +76,8 @@ impl Ensemble {
         Header {
             granflow: env!("CARGO_PKG_VERSION").to_owned(),
             origin: self.origin.clone(),
+            written: self.written(),
+            further: reduced.further.clone(),
             failures: reduced.failures().map(|(number, failure)| (number, failure.to_owned())).collect(),
             ended: reduced
                 .rows
@@ -69,6 +85,15 @@ impl Ensemble {
                 .filter_map(|(number, row)| Some((*number, row.ended.as_ref().ok()?.0)))
                 .collect(),
         }
+    }
+}
+
+impl Ensemble {
+    fn written(&self) -> Written {
+        let (text, overrides) = self.case.parts();
+        let name = Path::new(self.case.source_name());
+        let path = std::path::absolute(name).unwrap_or_else(|_| name.to_owned());
+        Written { path, text: text.to_owned(), overrides }
     }
 }
 
@@ -147,11 +172,12 @@ fn decode(bytes: &mut Bytes, header: &Header, columns: usize, reduced: &mut Redu
     for (number, end) in ends {
         let values = bytes.numbers(columns)?;
         let ended = match end {
-            Ok(reason) => Ok((reason, bytes.numbers(SCALARS.len())?)),
+            Ok(reason) => Ok((reason, bytes.numbers(SCALARS.len() + header.further.len())?)),
             Err(failure) => Err(failure),
         };
         reduced.rows.insert(number, Row { values, ended });
     }
+    reduced.further.clone_from(&header.further);
     bytes.fill(&mut reduced.reached, Bytes::count)?;
     for Peaks { sums, largest, above, classes, .. } in &mut reduced.peaks {
         bytes.fill(sums, |bytes| bytes.take().map(i128::from_le_bytes))?;

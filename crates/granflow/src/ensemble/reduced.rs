@@ -3,7 +3,7 @@
 //! Counts are whole numbers, least and largest values know no order, and sums are whole multiples of 2^-40: no sum is rounded.
 
 use super::classes::Classes;
-use super::member::{Computed, Outcome, Row};
+use super::member::{Computed, Outcome, Row, SCALARS};
 use std::collections::BTreeMap;
 
 /// A unit of the sums: about 10^-12.
@@ -36,6 +36,8 @@ pub struct Reduced {
     pub(super) peaks: Vec<Peaks>,
     /// Classes of a doubling, as a power of two; none without percentiles.
     pub(super) bits: Option<u32>,
+    /// Names of the numbers that members have beyond [`SCALARS`], in the order of the alphabet.
+    pub(super) further: Vec<String>,
     /// What is known of each member that was added, by its number.
     pub(super) rows: BTreeMap<u32, Row>,
 }
@@ -55,6 +57,7 @@ impl Reduced {
             reached: vec![0; cells],
             peaks: maps.iter().map(peaks).collect(),
             bits: classes.map(u32::ilog2),
+            further: Vec::new(),
             rows: BTreeMap::new(),
         }
     }
@@ -92,11 +95,31 @@ impl Reduced {
         let row = match result.and_then(|computed| self.fits(&computed).map(|()| computed)) {
             Ok(computed) => {
                 self.add_maps(&computed);
-                Row { values, ended: Ok((computed.reason, computed.scalars)) }
+                let Computed { reason, mut scalars, further, .. } = computed;
+                self.widen(further.keys());
+                let number = |name| further.get(name).copied().unwrap_or(f64::NAN);
+                scalars.extend(self.further.iter().map(number));
+                Row { values, ended: Ok((reason, scalars)) }
             }
             Err(failure) => Row { values, ended: Err(failure) },
         };
         assert!(self.rows.insert(number, row).is_none(), "member {number} is added twice");
+    }
+
+    /// Gives every row a place for these further numbers too, not a number where it has none.
+    fn widen<'a>(&mut self, names: impl Iterator<Item = &'a String>) {
+        let mut all = self.further.clone();
+        all.extend(names.filter(|name| !self.further.contains(name)).cloned());
+        if all.len() == self.further.len() {
+            return;
+        }
+        all.sort();
+        let places: Vec<_> = all.iter().map(|name| self.further.iter().position(|own| own == name)).collect();
+        for (_, scalars) in self.rows.values_mut().filter_map(|row| row.ended.as_mut().ok()) {
+            let own = scalars.split_off(SCALARS.len());
+            scalars.extend(places.iter().map(|place| place.map_or(f64::NAN, |place| own[place])));
+        }
+        self.further = all;
     }
 
     /// Can these maps be added?
@@ -133,10 +156,12 @@ impl Reduced {
     ///
     /// # Errors
     /// The first member that is in both; then nothing is added.
-    pub fn merge(&mut self, other: Reduced) -> Result<(), u32> {
+    pub fn merge(&mut self, mut other: Reduced) -> Result<(), u32> {
         if let Some(twice) = other.rows.keys().find(|number| self.rows.contains_key(number)) {
             return Err(*twice);
         }
+        self.widen(other.further.iter());
+        other.widen(self.further.iter());
         self.rows.extend(other.rows);
         add(&mut self.reached, &other.reached);
         for (own, other) in self.peaks.iter_mut().zip(&other.peaks) {

@@ -5,43 +5,50 @@ use super::{Ensemble, EnsembleError, Reduced};
 use crate::output::netcdf::{Axis, Dataset, Values, Variable, history};
 use crate::output::{Precision, whole_file};
 use std::fmt::Write as _;
+use std::io::{self, Write};
 use std::path::Path;
 use std::time::SystemTime;
 
 impl Ensemble {
-    /// `members.csv`: a line for each member, with the override that each value was, its numbers, and how it ended.
+    /// Writes `members.csv`.
     pub(super) fn write_table(&self, reduced: &Reduced, path: &Path) -> Result<(), EnsembleError> {
+        Ok(whole_file(path, |out| self.table(reduced, out))?)
+    }
+
+    /// What `members.csv` holds: a line for each member, with the override that each value was, its numbers, and how it ended.
+    ///
+    /// # Errors
+    /// What `out` could not take.
+    pub fn table(&self, reduced: &Reduced, out: &mut dyn Write) -> io::Result<()> {
         let columns = self.plan().columns();
-        whole_file(path, |out| {
-            let mut line = "member".to_owned();
-            for name in
-                columns.iter().map(|column| column.name.as_str()).chain(SCALARS.map(|(name, ..)| name))
-            {
-                let _ = write!(line, ",{}", quoted(name)); // a String takes everything
+        let keys = columns.iter().map(|column| column.name.as_str());
+        let further = reduced.further.iter().map(String::as_str);
+        let names: Vec<String> =
+            keys.chain(SCALARS.map(|(name, ..)| name)).chain(further).map(quoted).collect();
+        writeln!(out, "member,status,{},stop_reason,failure", names.join(","))?;
+        for (number, row) in &reduced.rows {
+            let status = if row.failure().is_some() { "failed" } else { "computed" };
+            let mut line = format!("{number},{status}");
+            for (value, column) in row.values.iter().zip(&columns) {
+                // a String takes everything
+                let _ = match &column.choices {
+                    Some(choices) => {
+                        write!(line, ",{}", quoted(choices.get(*value as usize).map_or("", String::as_str)))
+                    }
+                    None => write!(line, ",{value:?}"),
+                };
             }
-            writeln!(out, "{line},ended,failure")?;
-            for (number, row) in &reduced.rows {
-                line = number.to_string();
-                for (value, column) in row.values.iter().zip(&columns) {
-                    let _ = match &column.choices {
-                        Some(choices) => write!(
-                            line,
-                            ",{}",
-                            quoted(choices.get(*value as usize).map_or("", String::as_str))
-                        ),
-                        None => write!(line, ",{value:?}"),
-                    };
-                }
-                for value in numbers(row) {
-                    let _ = if value.is_finite() { write!(line, ",{value:?}") } else { write!(line, ",") };
-                }
-                match &row.ended {
-                    Ok((reason, _)) => writeln!(out, "{line},{},", quoted(&reason.to_string()))?,
-                    Err(failure) => writeln!(out, "{line},failed,{}", quoted(failure))?,
-                }
+            for value in numbers(reduced, row) {
+                let _ = if value.is_finite() { write!(line, ",{value:?}") } else { write!(line, ",") };
             }
-            Ok(())
-        })?;
+            match &row.ended {
+                Ok((reason, _)) => {
+                    let reason = serde_json::to_value(reason)?;
+                    writeln!(out, "{line},{},", reason.as_str().unwrap_or_default())?;
+                }
+                Err(failure) => writeln!(out, "{line},,{}", quoted(failure))?,
+            }
+        }
         Ok(())
     }
 
@@ -72,8 +79,10 @@ impl Ensemble {
             };
             variables.push(variable(&column.name.replace('.', "_"), words, "1", values));
         }
-        for (k, (name, units, _)) in SCALARS.iter().enumerate() {
-            let values = rows.iter().map(|row| numbers(row)[k]).collect();
+        let known = SCALARS.iter().map(|(name, units, _)| (*name, *units));
+        let further = reduced.further.iter().map(|name| (name.as_str(), self.units_of_largest(name)));
+        for (k, (name, units)) in known.chain(further).enumerate() {
+            let values = rows.iter().map(|row| numbers(reduced, row)[k]).collect();
             let units = if self.plane().domain.raster().is_some() { units } else { "1" };
             variables.push(variable(name, name.replace('_', " "), units, values));
         }
@@ -89,6 +98,12 @@ impl Ensemble {
         };
         let dataset = Dataset { axes: vec![axis], variables, ..self.about(command) };
         Ok(dataset.write(path, None)?)
+    }
+
+    /// Units of the largest value of a map, as `peak_speed_max`; none of other numbers.
+    fn units_of_largest(&self, name: &str) -> &'static str {
+        let map = name.strip_suffix("_max").and_then(|map| self.plane().model().quantity(map));
+        map.map_or("", |quantity| quantity.units_in(self.plane().domain.units()))
     }
 
     /// What both files say of the ensemble.
@@ -110,8 +125,9 @@ impl Ensemble {
 }
 
 /// The numbers of a member; none of one that failed.
-fn numbers(row: &Row) -> Vec<f64> {
-    row.ended.as_ref().map_or_else(|_| vec![f64::NAN; SCALARS.len()], |(_, numbers)| numbers.clone())
+fn numbers(reduced: &Reduced, row: &Row) -> Vec<f64> {
+    let count = SCALARS.len() + reduced.further.len();
+    row.ended.as_ref().map_or_else(|_| vec![f64::NAN; count], |(_, numbers)| numbers.clone())
 }
 
 /// A text as a field of a table: in quotes where it has to be.

@@ -7,8 +7,8 @@ use std::io::{self, Read, Seek, Write};
 use std::path::{Path, PathBuf};
 
 /// What a run leaves; an earlier run was here if one of the first five is there.
-const FILES: [&str; 23] = [
-    "checkpoint/ensemble.part",
+const FILES: [&str; 22] = [
+    "checkpoint/ensemble.bin",
     "checkpoint/state.bin",
     "checkpoint/frames.bin",
     "summary.json",
@@ -29,7 +29,6 @@ const FILES: [&str; 23] = [
     "members.csv",
     "members.nc",
     "ensemble.json",
-    "ensemble.nc",
     LEFT,
 ];
 /// The list of the files that a finished run left ([`Folder::list`]).

@@ -1,6 +1,6 @@
 //! A part of an ensemble: which members it holds, and their numbers added up.
 //!
-//! Layout: the line `granflow part 1`, a u32 length, that many bytes of JSON, the numbers, the CRC-32 of all before; little endian.
+//! Layout: the line `granflow part 2`, a u32 length, that many bytes of JSON, the numbers, the CRC-32 of all before; little endian.
 
 use super::checkpoint::Origin;
 use super::inputs::difference;
@@ -8,9 +8,9 @@ use super::{Error, Summed};
 use crate::stop_reason::StopReason;
 use serde::{Deserialize, Serialize};
 use std::io::{self, BufWriter, Write};
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
-const MAGIC: &[u8] = b"granflow part 1\n";
+const MAGIC: &[u8] = b"granflow part 2\n";
 
 /// What stands before the numbers.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -19,10 +19,25 @@ pub(crate) struct Header {
     pub granflow: String,
     /// What the members were made of.
     pub origin: Origin,
+    /// The case itself.
+    pub written: Written,
+    /// Names of the numbers that members have beyond those that all have.
+    pub further: Vec<String>,
     /// The members that failed, and why.
     pub failures: Vec<(u32, String)>,
     /// The members that came to their end, and which.
     pub ended: Vec<(u32, StopReason)>,
+}
+
+/// A case as it was written, so that a part can be used without its file.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub(crate) struct Written {
+    /// The path of the file, from the root: what the case names is looked for beside it.
+    pub path: PathBuf,
+    /// The text of the file.
+    pub text: String,
+    /// The overrides laid over it.
+    pub overrides: Vec<String>,
 }
 
 /// Writes a part, its numbers by `numbers`.
@@ -42,6 +57,13 @@ pub(crate) fn encode(
 
 /// Header and numbers of a part of this origin; messages name `path`.
 pub(crate) fn decode<'a>(path: &Path, bytes: &'a [u8], origin: &Origin) -> Result<(Header, &'a [u8]), Error> {
+    let (header, numbers) = open(path, bytes)?;
+    header.check(path, origin)?;
+    Ok((header, numbers))
+}
+
+/// Header and numbers of a part of any origin, computed by this version; messages name `path`.
+pub(crate) fn open<'a>(path: &Path, bytes: &'a [u8]) -> Result<(Header, &'a [u8]), Error> {
     let altered = || Error::damaged(path, "the part is truncated or altered; compute it again");
     let Some(rest) = bytes.strip_prefix(MAGIC) else {
         let problem = "this is no part of an ensemble; `granflow ensemble --part 1/16` writes one";
@@ -58,23 +80,22 @@ pub(crate) fn decode<'a>(path: &Path, bytes: &'a [u8], origin: &Origin) -> Resul
     let header: Header = serde_json::from_slice(header).map_err(|error| {
         Error::damaged(path, format!("its head cannot be read: {error}; compute it again"))
     })?;
-    header.check(path, origin)?;
+    let version = env!("CARGO_PKG_VERSION");
+    if header.granflow != version {
+        let problem = format!(
+            "it was computed by granflow {}, and this is {version}, whose last bits may differ; compute all parts with one version",
+            header.granflow
+        );
+        return Err(Error::mismatch(path, problem));
+    }
     Ok((header, numbers))
 }
 
 impl Header {
-    /// A part of another version, case or input is refused: its members are others.
+    /// A part of another case or input is refused: its members are others.
     fn check(&self, path: &Path, origin: &Origin) -> Result<(), Error> {
-        let version = env!("CARGO_PKG_VERSION");
-        if self.granflow != version {
-            let problem = format!(
-                "it was computed by granflow {}, and this is {version}, whose last bits may differ; compute all parts with one version",
-                self.granflow
-            );
-            return Err(Error::mismatch(path, problem));
-        }
         if self.origin.case != origin.case {
-            let problem = "it is of another case, or of this one with other overrides or before it was edited; give the case that it was computed from, with the same --set";
+            let problem = "it is of another case, or of this one with other overrides or before it was edited; compute all parts from one case, with the same --set";
             return Err(Error::mismatch(path, problem));
         }
         match difference(&self.origin.inputs, &origin.inputs) {

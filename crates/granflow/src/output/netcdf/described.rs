@@ -21,7 +21,10 @@ impl Dataset<'_> {
     #[must_use]
     pub fn described_variable<'v>(&self, variable: &'v Variable) -> Vec<(&'static str, &'v str)> {
         let placed = variable.axes.last().is_some_and(|axis| axis.starts_with('x'));
-        let mut attributes = vec![("units", variable.units.as_str()), ("long_name", &variable.long_name)];
+        let mut attributes = vec![("long_name", variable.long_name.as_str())];
+        if !variable.units.is_empty() {
+            attributes.insert(0, ("units", variable.units.as_str()));
+        }
         attributes.extend(self.crs.as_ref().filter(|_| placed).map(|_| ("grid_mapping", "crs")));
         attributes
     }
