@@ -172,7 +172,9 @@ impl Words {
         exceed.check(look, pressure)?;
         for (k, percent) in percentiles.iter().enumerate() {
             let key = format!("ensemble.percentiles[{k}]");
-            look.number(&key, *percent, |v| v > 0.0 && v < 100.0, "percent, between 0 and 100")?;
+            let fits = |v: f64| (0.01..=99.99).contains(&v);
+            look.number(&key, *percent, fits, "percent, from 0.01 to 99.99")?;
+            once(look, &key, &percentiles[..k], *percent)?;
         }
         let classes = classes.unwrap_or(16);
         if !(classes.is_power_of_two() && (4..=64).contains(&classes)) {
@@ -221,18 +223,21 @@ impl Exceed {
         ] {
             for (k, threshold) in list.iter().enumerate() {
                 let key = format!("ensemble.exceed.{name}[{k}]");
-                look.usual(&key, Some(*threshold))?;
-                if list[..k].contains(threshold) {
-                    return Err(look.fault(
-                        &key,
-                        format!("{threshold} stands here twice"),
-                        "remove one of them",
-                    ));
-                }
+                let fits = |v: f64| (1e-9..=1e12).contains(&v);
+                look.number(&key, *threshold, fits, "a number from 1e-9 to 1e12")?;
+                once(look, &key, &list[..k], *threshold)?;
             }
         }
         Ok(())
     }
+}
+
+/// Maps are named by their value, which none `before` may be.
+fn once(look: &Look, key: &str, before: &[f64], value: f64) -> Result<(), CaseError> {
+    if before.contains(&value) {
+        return Err(look.fault(key, format!("{value} stands here twice"), "remove one of them"));
+    }
+    Ok(())
 }
 
 /// How many members there are.

@@ -117,6 +117,10 @@ pub fn ensemble(arguments: &Arguments) -> Result<(), Failure> {
     options.workers = arguments.threads.map_or(0, std::num::NonZeroUsize::get);
     (options.resume, options.keep_members) = (arguments.resume, arguments.keep_members);
     if let Some(Part([number, count])) = arguments.part {
+        if arguments.keep_members {
+            let message = "--keep-members: a part is one file and keeps sums, not members";
+            return Err(Failure::usage(message, "leave it out, or compute the members without --part"));
+        }
         if count > all {
             let message = format!("--part {number}/{count}: the case has only {all} members");
             return Err(Failure::usage(message, "take at most as many parts as members"));

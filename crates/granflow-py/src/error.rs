@@ -66,7 +66,9 @@ pub fn of_start(py: Python<'_>, error: &StartError) -> PyErr {
             _ => of_file(text, None),
         },
         StartError::Memory { .. } => PyMemoryError::new_err(text),
-        StartError::Build(_) | StartError::Feature { .. } => PyValueError::new_err(text),
+        StartError::Build(_) | StartError::Feature { .. } | StartError::Result { .. } => {
+            PyValueError::new_err(text)
+        }
     }
 }
 

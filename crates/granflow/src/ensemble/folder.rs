@@ -73,6 +73,13 @@ impl Ensemble {
         };
         let keep = |reduced: &Reduced| self.write(reduced, &path);
         let members = options.members.clone();
+        let before = members.clone().filter(|number| begun.has(*number)).count();
+        if options.keep_members && before > 0 {
+            let text = format!(
+                "{before} members were computed before; only those computed now are kept one by one (another --out computes all)"
+            );
+            (options.notice)(&text);
+        }
         let reduced = self.run(members.clone(), begun, options.workers, stop, &keep, &mut listen)?;
         if let Some(error) = unwritten {
             return Err(error);
