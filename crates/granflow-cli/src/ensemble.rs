@@ -144,7 +144,12 @@ pub fn ensemble(arguments: &Arguments) -> Result<(), Failure> {
 /// Puts parts together.
 pub fn merge(arguments: &MergeArguments) -> Result<(), Failure> {
     let case = case_of_part(&arguments.parts[0], arguments.case.as_deref())?;
-    let ensemble = begin(&case, arguments.quiet)?;
+    let ensemble = begin(&case, arguments.quiet).inspect_err(|_| {
+        if arguments.case.is_none() {
+            let name = case.source_name();
+            tell(&format!("note: the case of the parts was {name}; --case CASE.toml says where it is now\n"));
+        }
+    })?;
     let options = options(&arguments.out, arguments.quiet);
     let begun = Instant::now();
     let done = ensemble.merge(&arguments.parts, &options)?;

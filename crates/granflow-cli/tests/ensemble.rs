@@ -121,6 +121,25 @@ fn parts_of_any_order_are_the_whole() {
 }
 
 #[test]
+fn parts_whose_files_have_moved_say_how_they_are_found() {
+    let read = "thickness = { file = \"start.csv\" }";
+    let folder =
+        slab(&SLAB.replace("thickness.steps = { at = [-0.5, 0.0], values = [0.0, 1.0, 0.0] }", read));
+    let at = |name: &str| folder.path().join(name);
+    let start: Vec<String> = (0..100).map(|cell| if cell < 20 { "1.0" } else { "0.0" }.to_owned()).collect();
+    fs::write(at("start.csv"), start.join(",")).unwrap();
+    let part = granflow(folder.path(), &["ensemble", "slab.toml", "--part", "1/1", "--out", "parts", "-q"]);
+    assert!(part.status.success(), "{}", told(&part));
+    fs::create_dir(at("moved")).unwrap();
+    ["slab.toml", "start.csv"].map(|name| fs::rename(at(name), at("moved").join(name)).unwrap());
+    let merge = ["merge", "parts/part-1-of-1.bin", "--out", "whole"];
+    let output = granflow(folder.path(), &merge);
+    assert!(!output.status.success() && told(&output).contains("--case CASE.toml"), "{}", told(&output));
+    let found = granflow(folder.path(), &[merge.as_slice(), &["--case", "moved/slab.toml"]].concat());
+    assert!(found.status.success() && at("whole/result.nc").exists(), "{}", told(&found));
+}
+
+#[test]
 fn what_makes_no_sense_is_refused_with_the_cure() {
     let folder = slab(SLAB);
     let plain = SLAB.split("[ensemble]").next().unwrap();
