@@ -1,0 +1,66 @@
+// Plays runs: asks the engine for steps as long as it plays, one request at a time, and shows what comes. How far it asks at a
+// time follows from how fast this machine is.
+
+const PAUSE = 12 // milliseconds of computing between two answers
+const SLACK = 0.1 // seconds of play that may be owed
+
+// The same function, of which one call begins when the one before has ended.
+export function serial(work) {
+  let last = Promise.resolve()
+  return (...values) => {
+    last = last.then(() => work(...values), () => work(...values))
+    return last
+  }
+}
+
+export class Player {
+  // `ask(limits)` steps and resolves to true at the end; `show()` draws, at most once a frame; `pace()` says how much of the
+  // run's time may pass in a second, of which `time()` is the present one.
+  constructor({ ask, show, changed, failed, pace = () => Infinity, time = () => 0 }) {
+    Object.assign(this, { ask, show, changed, failed, pace, time, playing: false, ended: false })
+  }
+  play() {
+    if (this.playing || this.ended) return
+    this.playing = true
+    this.changed()
+    this.loop()
+  }
+  pause() {
+    this.playing = false
+    this.changed()
+  }
+  async loop() {
+    let last = performance.now()
+    let due = this.time()
+    while (this.playing && !this.ended) {
+      const now = performance.now()
+      due += this.pace() * Math.max(1, now - last) / 1e3
+      last = now
+      if (due > this.time()) await this.once({ time: due, milliseconds: PAUSE })
+      due = Math.min(due, this.time() + this.pace() * SLACK) // what a slow machine could not do is not caught up
+      await new Promise(requestAnimationFrame)
+    }
+  }
+  async step() {
+    if (!this.busy && !this.ended) await this.once({ steps: 1 })
+  }
+  async once(limits) {
+    this.busy = true
+    try {
+      this.ended = await this.ask(limits)
+      this.show()
+    } catch (error) {
+      this.ended = true
+      this.failed(error)
+    }
+    this.busy = false
+    if (this.ended) this.playing = false
+    this.changed()
+  }
+  // Resolves when nothing is asked for any more.
+  async stop() {
+    this.playing = false
+    while (this.busy) await new Promise(done => setTimeout(done, 5))
+    this.ended = false
+  }
+}
