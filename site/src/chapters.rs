@@ -4,7 +4,7 @@
 pub const PARTS: [(&str, &[&str]); 4] = [
     (
         "Using it",
-        &["docs/first-steps.md", "docs/case-file.md", "docs/outputs.md", "docs/glossary.md", "cases/"],
+        &["docs/first-steps.md", "docs/case-file.md", "docs/outputs.md", "docs/web.md", "docs/glossary.md", "cases/"],
     ),
     (
         "How it computes",

@@ -1,7 +1,7 @@
 // Plays runs: asks the engine for steps as long as it plays, one request at a time, and shows what comes. How far it asks at a
 // time follows from how fast this machine is.
 
-const PAUSE = 12 // milliseconds of computing between two answers
+const PAUSE = 12 // milliseconds of computing between two answers, at least; half of a frame where that is longer
 const SLACK = 0.1 // seconds of play that may be owed
 
 // The same function, of which one call begins when the one before has ended.
@@ -34,9 +34,10 @@ export class Player {
     let due = this.time()
     while (this.playing && !this.ended) {
       const now = performance.now()
-      due += this.pace() * Math.max(1, now - last) / 1e3
+      const passed = Math.max(1, now - last)
+      due += this.pace() * passed / 1e3
       last = now
-      if (due > this.time()) await this.once({ time: due, milliseconds: PAUSE })
+      if (due > this.time()) await this.once({ time: due, milliseconds: Math.max(PAUSE, Math.min(passed / 2, 100)) })
       due = Math.min(due, this.time() + this.pace() * SLACK) // what a slow machine could not do is not caught up
       await new Promise(requestAnimationFrame)
     }

@@ -1,6 +1,6 @@
 // A mountain in three dimensions: the relief with a picture of the field laid over it, turned and zoomed by the pointer.
 import {
-  BufferAttribute, BufferGeometry, ClampToEdgeWrapping, DataTexture, LinearFilter, LinearMipmapLinearFilter, Mesh, MeshBasicMaterial,
+  BufferAttribute, BufferGeometry, ClampToEdgeWrapping, DataTexture, LinearFilter, Mesh, MeshBasicMaterial,
   PerspectiveCamera, Raycaster, RGBAFormat, Scene, SRGBColorSpace, Vector2, WebGLRenderer,
 } from 'three'
 import { OrbitControls } from 'three/addons/controls/OrbitControls.js'
@@ -10,7 +10,7 @@ const FINEST = 160 // nodes of the relief along an axis: the picture over it has
 
 export class Relief {
   constructor(place) {
-    this.renderer = new WebGLRenderer({ antialias: true, alpha: true, preserveDrawingBuffer: true })
+    this.renderer = new WebGLRenderer({ antialias: false, alpha: true, preserveDrawingBuffer: true })
     this.renderer.outputColorSpace = SRGBColorSpace
     this.canvas = this.renderer.domElement
     this.canvas.setAttribute('role', 'img')
@@ -66,7 +66,7 @@ export class Relief {
     this.texture?.dispose()
     this.texture = new DataTexture(this.bytes, columns, rows, RGBAFormat)
     Object.assign(this.texture, {
-      colorSpace: SRGBColorSpace, magFilter: LinearFilter, minFilter: LinearMipmapLinearFilter, generateMipmaps: true,
+      colorSpace: SRGBColorSpace, magFilter: LinearFilter, minFilter: LinearFilter, generateMipmaps: false,
       wrapS: ClampToEdgeWrapping, wrapT: ClampToEdgeWrapping,
     })
     this.build()

@@ -187,7 +187,7 @@ export function sand(client, place) {
         chosen.table = value
         reset()
       }),
-      choice('Cells', { 40: '40 × 40', 60: '60 × 60', 100: '100 × 100' }, '60', value => {
+      choice('Cells', { 20: '20 × 20', 40: '40 × 40', 60: '60 × 60', 100: '100 × 100' }, '60', value => {
         chosen.cells = +value
         reset()
       }),
