@@ -24,8 +24,11 @@ export function hillshade(z, columns, rows, cell) {
     for (let i = 0; i < columns; i++) {
       const [w, e] = [Math.max(0, i - 1), Math.min(columns - 1, i + 1)]
       const [s, n] = [Math.max(0, j - 1), Math.min(rows - 1, j + 1)]
-      const gx = (z[j * columns + e] - z[j * columns + w]) / ((e - w) * cell)
-      const gy = (z[n * columns + i] - z[s * columns + i]) / ((n - s) * cell)
+      // Beside a gap the slope is that of the other side, or none.
+      const here = z[j * columns + i]
+      const at = k => (Number.isFinite(z[k]) ? z[k] : here)
+      const gx = (at(j * columns + e) - at(j * columns + w)) / ((e - w) * cell)
+      const gy = (at(n * columns + i) - at(s * columns + i)) / ((n - s) * cell)
       const lit = (-gx * light[0] - gy * light[1] + light[2]) / Math.sqrt(1 + gx * gx + gy * gy)
       shade[j * columns + i] = Number.isFinite(lit) ? 0.35 + 0.65 * Math.max(0, lit) : 0
     }

@@ -295,5 +295,5 @@ export function mountain(client, place) {
       })))
   listen()
   offerParameters()
-  return { reset, player, take, redraw: draw, open: () => relief || reset(), run: () => run, relief: () => relief, text }
+  return { reset, player, take, idle: () => reset.waiting + take.waiting === 0, redraw: draw, open: () => relief || reset(), run: () => run, relief: () => relief, text }
 }

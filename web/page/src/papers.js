@@ -91,7 +91,7 @@ export function papers(client, place) {
         if (!scheme || chosen.schemes.indexOf(scheme) < k) continue
         const overrides = [`scheme.name=${scheme}`]
         const { handle, about } = await client.call('open', example.text, overrides)
-        const run = { handle, about, scheme, example: chosen.example, colour: colours[k], names: fields(example), time: 0 }
+        const run = { handle, about, scheme, colour: colours[k], names: fields(example), time: 0 }
         run.x = Array.from({ length: about.cells[0] }, (_, i) => about.origin[0] + (i + 0.5) * about.size[0])
         run.nodes = Array.from({ length: about.cells[0] + 1 }, (_, i) => about.origin[0] + i * about.size[0])
         await advanced(run, { steps: 0 })
@@ -178,5 +178,5 @@ export function papers(client, place) {
     play, step, button('Reset', reset))
   place.append(controls, schemes, error, upper, lower, clock, make('div', { class: 'wide' }, table))
   offered()
-  return { reset, player, redraw: draw, open: () => runs.length || reset(), runs: () => runs }
+  return { reset, player, idle: () => reset.waiting === 0, redraw: draw, open: () => runs.length || reset(), runs: () => runs }
 }

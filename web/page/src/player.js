@@ -4,13 +4,17 @@
 const PAUSE = 12 // milliseconds of computing between two answers, at least; half of a frame where that is longer
 const SLACK = 0.1 // seconds of play that may be owed
 
-// The same function, of which one call begins when the one before has ended.
+// The same function, of which one call begins when the one before has ended; `waiting` says how many have not.
 export function serial(work) {
   let last = Promise.resolve()
-  return (...values) => {
-    last = last.then(() => work(...values), () => work(...values))
-    return last
+  const call = (...values) => {
+    call.waiting++
+    const mine = last.then(() => work(...values)).finally(() => { call.waiting-- })
+    last = mine.catch(() => {}) // its caller hears of a failure; the next call begins all the same
+    return mine
   }
+  call.waiting = 0
+  return call
 }
 
 export class Player {

@@ -99,7 +99,7 @@ export function sand(client, place) {
     const { standing_layer: standing, rolling_layer: rolling } = run.fields
     const height = centred(standing, n)
     const shade = hillshade(height, n, n, 1 / n)
-    const most = rolling.reduce((most, value) => Math.max(most, value), 1e-9)
+    const most = rolling.reduce((most, value) => (value > most ? value : most), 1e-9)
     const image = new ImageData(n, n)
     for (let k = 0; k < n * n; k++) {
       const at = 4 * ((n - 1 - Math.floor(k / n)) * n + k % n)
@@ -210,5 +210,5 @@ export function sand(client, place) {
     error,
     make('p', { class: 'hint' }, 'Press on the table and hold to pour; or choose it with Tab, move with the arrow keys, and pour with the space bar.'),
     make('div', { class: 'pair' }, picture, make('div', {}, section, clock)))
-  return { reset, player, redraw: draw, open: () => run || reset(), run: () => run, pourEverywhere: rate => { wanted = [{ rate }] } }
+  return { reset, player, idle: () => reset.waiting === 0, redraw: draw, open: () => run || reset(), run: () => run, pourEverywhere: rate => { wanted = [{ rate }] } }
 }

@@ -37,6 +37,7 @@ const colours = selector => page.$eval(selector, canvas => {
   return new Set(Array.from({ length: 64 * 64 }, (_, k) => [0, 1, 2].map(c => data[4 * k + c] >> 4).join())).size
 })
 const click = text => page.click(`section:not([hidden]) button:text-is("${text}")`)
+const idle = name => page.waitForFunction(name => window.granflow.tabs[name].idle(), name, { polling: 50 })
 const ended = name => page.waitForFunction(name => window.granflow.tabs[name].player.ended, name, { polling: 200 })
 
 // A mountain to rest, and how often the page draws meanwhile.
@@ -52,7 +53,7 @@ const rate = k => (1e3 * (after[k] - before[k]) / (Date.now() - begun)).toFixed(
 check(+rate(0) >= 2, `while a mountain of 200 x 300 cells runs: ${rate(0)} frames a second of the page, ${rate(1)} of the relief`)
 await page.screenshot({ path: join(pictures, 'mountain-running.png') })
 await page.selectOption('#mountain label:has-text("Cells") select', '10')
-await page.waitForFunction(() => window.granflow.tabs.mountain.run()?.about.cells[0] === 100)
+await idle('mountain')
 await click('Run')
 await ended('mountain')
 check(/at rest/.test(await page.textContent('#mountain .clock')), `mountain: ${await page.textContent('#mountain .clock')}`)
@@ -73,7 +74,7 @@ check(await page.isHidden('#mountain .error'), 'a dropped mountain and its relea
 
 // Sand, poured by the pointer.
 await page.click('[data-tab=sand]')
-await page.waitForFunction(() => window.granflow.tabs.sand.run())
+await idle('sand')
 const box = await (await page.$('canvas.table')).boundingBox()
 await page.mouse.move(box.x + 0.4 * box.width, box.y + 0.4 * box.height)
 await page.mouse.down()
@@ -89,7 +90,7 @@ await page.screenshot({ path: join(pictures, 'sand.png') })
 await page.selectOption('#sand label:has-text("Cells") select', '20')
 await page.selectOption('#sand label:has-text("Scheme") select', 'first_order')
 await page.selectOption('#sand label:has-text("Table") select', 'l')
-await page.waitForFunction(() => window.granflow.tabs.sand.run()?.about.cells[0] === 20)
+await idle('sand')
 await click('The pile at once')
 await click('Pour everywhere')
 await ended('sand')
@@ -98,13 +99,10 @@ await page.screenshot({ path: join(pictures, 'sand-steady.png') })
 
 // The papers: each example to its end, with two schemes.
 await page.click('[data-tab=papers]')
-await page.waitForFunction(() => window.granflow.tabs.papers.runs().length === 2)
+await idle('papers')
 for (const example of ['silo', 'riemann', 'sine', 'constant', 'roof']) {
   await page.selectOption('#papers label:has-text("Example") select', example)
-  await page.waitForFunction(example => {
-    const runs = window.granflow.tabs.papers.runs()
-    return runs.length === 2 && runs.every(run => run.example === example && run.first)
-  }, example)
+  await idle('papers')
   await click('Run')
   await ended('papers')
   const states = await page.$$eval('#papers tbody td:last-child', cells => cells.map(cell => cell.textContent))
