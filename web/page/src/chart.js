@@ -1,8 +1,8 @@
 // Lines over one axis on a canvas, with axes that the eye can read; colours from the page's style.
 
 const nice = span => {
-  const power = 10 ** Math.floor(Math.log10(span))
-  return [1, 2, 5, 10].map(step => step * power).find(step => span / step <= 5)
+  const power = 10 ** (Math.floor(Math.log10(span)) - 1)
+  return [1, 2, 5, 10, 20, 50].map(step => step * power).find(step => span / step <= 8)
 }
 
 // `lines`: [{ x, y, colour, width, dashed }]; `range`: [x0, x1, y0, y1], or what the lines span; marks: [{ x, colour }].
