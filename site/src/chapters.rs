@@ -11,6 +11,7 @@ pub const PARTS: [(&str, &[&str]); 4] = [
             "docs/outputs.md",
             "docs/ensemble.md",
             "docs/python.md",
+            "docs/web.md",
             "docs/qgis.md",
             "docs/glossary.md",
             "cases/",

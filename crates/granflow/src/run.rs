@@ -4,6 +4,7 @@
 //! [`build`](crate::build) without any case, and [`Simulated`] makes one of every scheme that the engine can step. [`drive`]
 //! steps a run to one of its [`Ends`] and lets [sinks](crate::sinks) look on.
 
+mod checksum;
 mod drive;
 mod durations;
 mod entry;
@@ -20,6 +21,7 @@ mod trickle;
 
 pub use crate::entry::{Entry, sum};
 pub use crate::stop_reason::StopReason;
+pub use checksum::checksums;
 pub use drive::{DriveError, drive, reached, watch_for};
 pub use durations::{Exceeded, What};
 pub use entry::mass_error;
