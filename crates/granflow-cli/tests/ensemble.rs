@@ -131,7 +131,9 @@ fn parts_whose_files_have_moved_say_how_they_are_found() {
     let part = granflow(folder.path(), &["ensemble", "slab.toml", "--part", "1/1", "--out", "parts", "-q"]);
     assert!(part.status.success(), "{}", told(&part));
     fs::create_dir(at("moved")).unwrap();
-    ["slab.toml", "start.csv"].map(|name| fs::rename(at(name), at("moved").join(name)).unwrap());
+    for name in ["slab.toml", "start.csv"] {
+        fs::rename(at(name), at("moved").join(name)).unwrap();
+    }
     let merge = ["merge", "parts/part-1-of-1.bin", "--out", "whole"];
     let output = granflow(folder.path(), &merge);
     assert!(!output.status.success() && told(&output).contains("--case CASE.toml"), "{}", told(&output));
