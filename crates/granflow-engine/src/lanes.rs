@@ -1,7 +1,6 @@
 //! Several cells side by side: the same formulas on SIMD lanes, with the same bits.
 
 mod level;
-mod pair;
 mod simd;
 #[cfg(test)]
 mod tests;

@@ -1,11 +1,18 @@
 //! Which instructions the processor has, and functions in which they are allowed.
 
+#[cfg(any(
+    target_arch = "x86",
+    target_arch = "x86_64",
+    target_arch = "aarch64",
+    target_feature = "simd128"
+))]
+use super::simd::Lanes;
 use super::vector::SimdVector;
-#[cfg(any(target_arch = "x86", target_arch = "x86_64", target_arch = "aarch64"))]
-use super::{pair::Pair, simd::Lanes};
 use fearless_simd::Level;
 #[cfg(target_arch = "aarch64")]
 use fearless_simd::aarch64::Neon;
+#[cfg(target_feature = "simd128")]
+use fearless_simd::wasm32::WasmSimd128;
 #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
 use fearless_simd::x86::{Avx2, Avx512};
 use std::marker::PhantomData;
@@ -15,7 +22,7 @@ use std::marker::PhantomData;
 pub enum SimdLevel {
     /// One cell at a time.
     Scalar,
-    /// The widest vectors of this processor: AVX-512, AVX2 or NEON; one cell at a time where it has none of them.
+    /// The widest vectors of this processor: AVX-512, AVX2, NEON or WebAssembly's; one cell at a time where it has none of them.
     Best,
     /// As `Best`, but no wider than AVX2.
     Avx2,
@@ -210,12 +217,16 @@ impl SimdLevel {
             #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
             (SimdLevel::Best | SimdLevel::Avx2, level) if level.as_avx2().is_some() => {
                 let simd = level.as_avx2().expect("just seen");
-                job.run::<Pair<Lanes<Avx2>>>(Avx2Context::<C>::new(simd))
+                job.run::<Lanes<Avx2>>(Avx2Context::<C>::new(simd))
             }
             #[cfg(target_arch = "aarch64")]
             (SimdLevel::Best | SimdLevel::Avx2, Level::Neon(simd)) => {
-                job.run::<Pair<Lanes<Neon>>>(NeonContext::<C>::new(simd))
+                job.run::<Lanes<Neon>>(NeonContext::<C>::new(simd))
             }
+            // A module of WebAssembly has them everywhere or nowhere: loops for one cell at a time would only make it larger.
+            #[cfg(target_feature = "simd128")]
+            _ => job.run::<Lanes<WasmSimd128>>(ScalarContext::<C>::new(())),
+            #[cfg(not(target_feature = "simd128"))]
             _ => job.run::<f64>(ScalarContext::<C>::new(())),
         }
     }
@@ -226,10 +237,13 @@ impl SimdLevel {
             (SimdLevel::Best, Level::Avx512(_)) => "AVX-512, vectors of 8 cells",
             #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
             (SimdLevel::Best | SimdLevel::Avx2, level) if level.as_avx2().is_some() => {
-                "AVX2, two vectors of 4 cells"
+                "AVX2, vectors of 4 cells"
             }
             #[cfg(target_arch = "aarch64")]
-            (SimdLevel::Best | SimdLevel::Avx2, Level::Neon(_)) => "NEON, two vectors of 2 cells",
+            (SimdLevel::Best | SimdLevel::Avx2, Level::Neon(_)) => "NEON, vectors of 2 cells",
+            #[cfg(target_feature = "simd128")]
+            _ => "WebAssembly, vectors of 2 cells",
+            #[cfg(not(target_feature = "simd128"))]
             _ => "scalar, one cell at a time",
         }
     }

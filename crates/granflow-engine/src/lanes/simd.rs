@@ -145,8 +145,12 @@ impl<S: Simd> Real for Lanes<S> {
         }
         found.map(|numbers| Lanes(S::f64s::from_fn(Self::proof(), |k| numbers[k])))
     }
+    /// WebAssembly's vectors round twice: there each number is taken by itself.
     #[inline(always)]
     fn mul_add(self, factor: Self, term: Self) -> Self {
+        if cfg!(target_arch = "wasm32") {
+            return Self::each([self, factor, term], |[a, b, c]| [a.mul_add(b, c)])[0];
+        }
         Lanes(self.0.mul_add(factor.0, term.0))
     }
     /// On x86 the instruction is select(self < other) to the bit, zeros and what is not a number included.

@@ -1,14 +1,7 @@
 //! Every kind of lanes that this machine has gives what one number at a time gives, to the bit.
 
 use super::level::*;
-use super::pair::Pair;
-use super::simd::Lanes;
 use super::vector::{MAX_LANES, SimdVector};
-use fearless_simd::Level;
-#[cfg(target_arch = "aarch64")]
-use fearless_simd::aarch64::Neon;
-#[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
-use fearless_simd::x86::{Avx2, Avx512};
 use granflow_model::real::Real;
 use std::array::from_fn;
 
@@ -26,24 +19,10 @@ impl<T: Trial> SimdKernel for &T {
     }
 }
 
-/// On the kinds that runs use, and on vectors and pairs of them that they may come to use.
+/// On every kind that this processor has.
 fn everywhere(trial: &impl Trial) {
     for simd in [SimdLevel::Scalar, SimdLevel::Avx2, SimdLevel::Best] {
         simd.run::<Here, _>(trial);
-    }
-    trial.with_scalar::<Pair<f64>>(ScalarContext::<Here>::new(()));
-    #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
-    {
-        if let Some(simd) = Level::new().as_avx2() {
-            trial.with_scalar::<Lanes<Avx2>>(Avx2Context::<Here>::new(simd));
-        }
-        if let Level::Avx512(simd) = Level::new() {
-            trial.with_scalar::<Pair<Lanes<Avx512>>>(Avx512Context::<Here>::new(simd));
-        }
-    }
-    #[cfg(target_arch = "aarch64")]
-    if let Level::Neon(simd) = Level::new() {
-        trial.with_scalar::<Lanes<Neon>>(NeonContext::<Here>::new(simd));
     }
 }
 

@@ -3,7 +3,7 @@
 use granflow_model::real::Real;
 
 /// The most numbers side by side.
-pub(crate) const MAX_LANES: usize = 16;
+pub(crate) const MAX_LANES: usize = 8;
 
 /// A number, or several that are side by side in memory.
 pub trait SimdVector: Real {

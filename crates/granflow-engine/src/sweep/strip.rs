@@ -110,11 +110,14 @@ pub(super) fn run<'a, 't, const D: usize, L: SimdVector, T: Scheme<D, L>, S: Sch
     found: (&mut [TileStats], &mut [f64]),
     memory: (&mut Scratch<D, L, T>, &mut TileReducer),
 ) {
-    // Mountains, which are kept in single precision, are seldom uniform, the grounds of a line stay in the nearest cache, and one
-    // cell at a time is slow anyway: no loops are
-    // compiled for these.
-    if const { D > 1 && S::Ground::F32_MASK | S::Forcing::F32_MASK == 0 && L::WIDTH > 1 }
-        && tiles.clone().all(|tile| tile.uniform)
+    // Mountains, which are kept in single precision, are seldom uniform, the grounds of a line stay in the nearest cache, one cell
+    // at a time is slow anyway, and a page is to be small: no loops are compiled for these.
+    if const {
+        D > 1
+            && S::Ground::F32_MASK | S::Forcing::F32_MASK == 0
+            && L::WIDTH > 1
+            && !cfg!(target_arch = "wasm32")
+    } && tiles.clone().all(|tile| tile.uniform)
     {
         let strip = Strip::<D, true, L, T>::new::<S>(sweep, scheme, tiles.clone(), targets);
         strip.sweep(tiles, across, found, memory);

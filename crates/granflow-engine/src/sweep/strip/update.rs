@@ -103,7 +103,7 @@ impl<const D: usize, const UNIFORM: bool, L: SimdVector, T: Scheme<D, L>> Strip<
         let mut rate = self.scheme.rate(&cell, &self.spacing);
         cell.state.store(
             #[inline(always)]
-            |_, component| rate = component.mul_add(L::zero(), rate),
+            |_, component| rate = component * L::zero() + rate,
         );
         let infinite = L::splat(f64::INFINITY);
         let rate = L::select(rate.lt(infinite), rate, infinite);

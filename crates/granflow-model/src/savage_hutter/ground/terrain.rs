@@ -112,28 +112,27 @@ pub struct Tangent<const D: usize, R> {
 }
 components!([const D: usize, R: Real] Tangent<D, R> { slope: [R; D], square: R });
 
-/// 1/sqrt(1 - t) for t in \[0, 1): a series without roots and divisions up to t = 1/32, planes at 10 degrees to each other.
+/// 1/sqrt(1 - t) for t in \[0, 1): a polynomial without roots and divisions up to t = 1/32, planes at 10 degrees to each other.
 #[inline(always)]
 fn stretch<R: Real>(t: R) -> R {
-    /// (2 k over k)/4^k, from the last: the next is below 1e-16 at 1/32.
-    const SERIES: [f64; 10] = [
-        46189.0 / 262144.0,
-        12155.0 / 65536.0,
-        6435.0 / 32768.0,
-        429.0 / 2048.0,
-        231.0 / 1024.0,
-        63.0 / 256.0,
-        35.0 / 128.0,
-        5.0 / 16.0,
-        3.0 / 8.0,
-        0.5,
+    /// (f - 1)/t by powers of t: with it f has the smallest relative error on \[0, 1/32\] that its degree allows, 7e-18 (Remez's
+    /// exchange). Taylor's series would need three terms more.
+    const FACTORS: [f64; 7] = [
+        0.500_000_000_000_017_3,
+        0.374_999_999_985_889_34,
+        0.312_500_003_884_920_1,
+        0.273_436_993_594_434_13,
+        0.246_128_970_170_969_7,
+        0.224_246_064_451_280_17,
+        0.235_581_606_796_899_93,
     ];
     let one = R::splat(1.0);
-    let mut sum = R::splat(SERIES[0]);
-    for coefficient in &SERIES[1..] {
-        sum = sum.mul_add(t, R::splat(*coefficient));
-    }
-    sum = sum.mul_add(t, one);
+    // In pairs, which do not wait for each other (Estrin).
+    let square = t * t;
+    let low = (R::splat(FACTORS[0]) + R::splat(FACTORS[1]) * t)
+        + (R::splat(FACTORS[2]) + R::splat(FACTORS[3]) * t) * square;
+    let high = (R::splat(FACTORS[4]) + R::splat(FACTORS[5]) * t) + R::splat(FACTORS[6]) * square;
+    let mut sum = one + (low + high * (square * square)) * t;
     let far = R::splat(1.0 / 32.0).lt(t);
     if R::any(far) {
         let steep = one.le(t);
@@ -305,5 +304,21 @@ impl<const D: usize, R: Real> Bed<D, R> for Terrain<D, R> {
             }
         });
         self
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::stretch;
+
+    /// The polynomial and the root meet at 1/32; both are right to one unit in the last place, and nothing is stretched at 0.
+    #[test]
+    fn stretching_is_right_to_the_last_place() {
+        assert_eq!(stretch(0.0), 1.0);
+        for k in 0..=100_000 {
+            let t = f64::from(k) / 1_600_000.0;
+            let exact = 1.0 / (1.0 - t).sqrt();
+            assert!((stretch(t) - exact).abs() <= f64::EPSILON, "t = {t}: {} for {exact}", stretch(t));
+        }
     }
 }
