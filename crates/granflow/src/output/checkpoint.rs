@@ -5,7 +5,7 @@
 //! f64 or f32, then how far frames, ledger, gauges.csv and sections.csv had come (u64 records, u32
 //! CRC-32 of them, four times), then the CRC-32 of all before.
 
-use super::mark::Mark;
+use super::mark::{CURE, Mark};
 pub use super::origin::{Origin, Past};
 use super::{Error, Precision, Summed, whole_file};
 use crate::stop_reason::StopReason;
@@ -240,16 +240,15 @@ impl Header {
         file.by_ref().take(MAGIC.len() as u64).read_to_end(&mut magic).map_err(unread())?;
         if magic != MAGIC {
             let problem = if magic.starts_with(b"granflow checkpoint ") {
-                "this checkpoint has a layout that this version of granflow does not read; resume with the one that wrote it"
+                "this checkpoint has a layout that this version of granflow does not read; resume with the one that wrote it".into()
             } else {
-                "this is not a checkpoint of granflow"
+                format!("this is not a checkpoint of granflow; {CURE}")
             };
             return Err(Error::damaged(path, problem));
         }
         let short = |wanted: u64| {
-            let problem = format!(
-                "the checkpoint is truncated: {size} bytes where {wanted} are expected; start the run again without --resume"
-            );
+            let problem =
+                format!("the checkpoint is truncated: {size} bytes where {wanted} are expected; {CURE}");
             Error::damaged(path, problem)
         };
         let before = MAGIC.len() as u64 + 4;
@@ -293,8 +292,8 @@ impl Header {
 }
 
 fn altered(path: &Path) -> Error {
-    let problem = "the checkpoint does not match its checksum: it was altered or the disk failed; \
-                   start the run again without --resume";
+    let problem =
+        format!("the checkpoint does not match its checksum: it was altered or the disk failed; {CURE}");
     Error::damaged(path, problem)
 }
 

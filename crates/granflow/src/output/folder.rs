@@ -150,7 +150,7 @@ impl Folder {
         }
         names.sort();
         let files: Result<Vec<Input>, Error> =
-            names.iter().map(|name| Input::of(&self.path.join(name), Path::new(name))).collect();
+            names.iter().map(|name| Input::left(&self.path.join(name), Path::new(name))).collect();
         let files = files?;
         whole_file(&self.path.join(LEFT), |out| serde_json::to_writer(out, &files).map_err(io::Error::from))
     }
@@ -172,7 +172,7 @@ impl Folder {
                 lost.push(format!("{} is gone", file.name));
                 continue;
             }
-            let now = Input::of(&path, Path::new(&file.name))?;
+            let now = Input::left(&path, Path::new(&file.name))?;
             if now.bytes != file.bytes {
                 lost.push(format!(
                     "{} has {} bytes, {} when the run left it",

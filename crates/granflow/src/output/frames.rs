@@ -6,7 +6,7 @@
 //! tear only the last one: whoever finds an earlier one torn knows that the disk has failed. The sync is waited
 //! for beside the steps.
 
-use super::mark::Mark;
+use super::mark::{CURE, Mark};
 use super::{Error, Precision, Summed, whole_file};
 pub use crate::field::Field;
 use serde::{Deserialize, Serialize};
@@ -61,6 +61,8 @@ pub struct Frames {
     start: u64,
     /// Checksums of the header and of the frames.
     crcs: Vec<u32>,
+    /// Behind the frames stands one that a crash had torn.
+    torn: bool,
 }
 
 impl Frames {
@@ -80,7 +82,7 @@ impl Frames {
         Ok(Self::open(path)?.0)
     }
 
-    /// Opens a store to go on with it; every frame is checked, a torn end is cut off and reported.
+    /// Opens a store to go on with it; every frame is checked, a torn end is reported, and cut off before the file changes.
     ///
     /// # Errors
     /// [`Error::Io`]; [`Error::Damaged`] if this is no store, or a frame before the last does not match its
@@ -97,6 +99,7 @@ impl Frames {
             times: Vec::new(),
             start,
             crcs: vec![crc],
+            torn: false,
         };
         let length = frames.file.metadata().map_err(Error::io(path, "read"))?.len();
         let whole = (length - start) / frames.frame_size();
@@ -118,8 +121,7 @@ impl Frames {
                 frames.crcs.push(sum);
             } else if frame + 1 < whole {
                 let problem = format!(
-                    "frame {frame} of {whole} does not match its checksum: the file was altered or the disk failed; \
-                     start the run again without --resume"
+                    "frame {frame} of {whole} does not match its checksum: the file was altered or the disk failed; {CURE}"
                 );
                 return Err(Error::damaged(path, problem));
             }
@@ -128,7 +130,7 @@ impl Frames {
         if dropped == 0 {
             return Ok((frames, None));
         }
-        frames.file.set_len(frames.end()).map_err(Error::io(path, "shorten"))?;
+        frames.torn = true;
         let torn = Torn { path: path.to_owned(), bytes: dropped, kept: frames.times.len() };
         Ok((frames, Some(torn)))
     }
@@ -174,6 +176,9 @@ impl Frames {
             return Err(Error::invalid(&self.path, problem));
         }
         let (end, size) = (self.end(), self.frame_size());
+        if std::mem::take(&mut self.torn) {
+            self.file.set_len(end).map_err(Error::io(&self.path, "shorten"))?;
+        }
         let mut file = &self.file;
         let write = || -> io::Result<u32> {
             file.seek(SeekFrom::Start(end))?;
@@ -212,6 +217,7 @@ impl Frames {
             times: self.times.clone(),
             start: self.start,
             crcs: self.crcs.clone(),
+            torn: self.torn,
         })
     }
 
@@ -227,11 +233,11 @@ impl Frames {
         Mark { count: count as u64, crc: crc.finalize() }
     }
 
-    /// Drops the frames after `mark`, where the checkpoint was written that a run goes on from; returns how many.
+    /// Are the frames up to `mark` those of then?
     ///
     /// # Errors
-    /// [`Error::Mismatch`] if the frames before it are not those of then; [`Error::Io`] if the file cannot be shortened.
-    pub fn truncate_to(&mut self, mark: Mark) -> Result<usize, Error> {
+    /// [`Error::Mismatch`] if they are not.
+    pub fn fits(&self, mark: Mark) -> Result<(), Error> {
         let (before, count) = (self.times.len(), mark.count as usize);
         if count > before || self.mark_at(count) != mark {
             let what = if count > before {
@@ -239,12 +245,21 @@ impl Frames {
             } else {
                 format!("its first {count} frames are not those that the checkpoint goes on from")
             };
-            let problem =
-                format!("{what}; put the file back as the run left it, or start again without --resume");
-            return Err(Error::mismatch(&self.path, problem));
+            return Err(Error::mismatch(&self.path, format!("{what}; {CURE}")));
         }
+        Ok(())
+    }
+
+    /// Drops the frames after `mark`, where the checkpoint was written that a run goes on from; returns how many.
+    ///
+    /// # Errors
+    /// As [`Frames::fits`]; [`Error::Io`] if the file cannot be shortened.
+    pub fn truncate_to(&mut self, mark: Mark) -> Result<usize, Error> {
+        self.fits(mark)?;
+        let (before, count) = (self.times.len(), mark.count as usize);
         self.times.truncate(count);
         self.crcs.truncate(count + 1);
+        self.torn = false;
         self.file
             .set_len(self.end())
             .and_then(|()| self.file.sync_all())
@@ -325,7 +340,10 @@ impl Frames {
 
 /// The header, where it ends, and its checksum.
 fn read_header(path: &Path, file: &mut File) -> Result<(Header, u64, u32), Error> {
-    let alien = || Error::damaged(path, "this is not a store of frames that this version of granflow writes");
+    let alien = || {
+        let problem = format!("this is not a store of frames that this version of granflow writes; {CURE}");
+        Error::damaged(path, problem)
+    };
     let mut lead = [0; MAGIC.len() + 4];
     file.read_exact(&mut lead).map_err(|_| alien())?;
     let (magic, length) = lead.split_at(MAGIC.len());
@@ -338,10 +356,7 @@ fn read_header(path: &Path, file: &mut File) -> Result<(Header, u64, u32), Error
     let (header, crc) = bytes.split_at(length as usize);
     let sum = crc32fast::hash(header);
     if crc != sum.to_le_bytes() {
-        return Err(Error::damaged(
-            path,
-            "its header does not match its checksum; start the run again without --resume",
-        ));
+        return Err(Error::damaged(path, format!("its header does not match its checksum; {CURE}")));
     }
     let header = serde_json::from_slice(header).map_err(|_| alien())?;
     Ok((header, (lead.len() + bytes.len()) as u64, sum))

@@ -3,7 +3,7 @@
 use super::Error;
 use serde::{Deserialize, Serialize};
 use std::fs::File;
-use std::io::Read;
+use std::io::{Read, Seek, SeekFrom};
 use std::path::{Path, PathBuf};
 
 /// A file that a run was made of, or that it left.
@@ -44,6 +44,21 @@ pub fn inputs(paths: &[PathBuf], name: impl Fn(&Path) -> PathBuf) -> Result<Vec<
 }
 
 impl Input {
+    /// A file that a run left, called `name`. A file that ends with its own CRC-32, as a checkpoint does, has the same CRC-32
+    /// whatever it holds: its last bytes are taken twice.
+    pub(super) fn left(path: &Path, name: &Path) -> Result<Input, Error> {
+        let mut input = Self::of(path, name)?;
+        let mut file = File::open(path).map_err(Error::io(path, "read"))?;
+        let mut end = Vec::new();
+        file.seek(SeekFrom::Start(input.bytes.saturating_sub(4)))
+            .and_then(|_| file.read_to_end(&mut end))
+            .map_err(Error::io(path, "read"))?;
+        let mut twice = crc32fast::Hasher::new_with_initial_len(input.crc, input.bytes);
+        twice.update(&end);
+        input.crc = twice.finalize();
+        Ok(input)
+    }
+
     /// The file at `path`, called `name`.
     pub(super) fn of(path: &Path, name: &Path) -> Result<Input, Error> {
         let mut file = File::open(path).map_err(Error::io(path, "read"))?;
@@ -81,6 +96,20 @@ pub(super) fn difference(then: &[Input], now: &[Input]) -> Option<String> {
 mod tests {
     use super::*;
     use std::fs;
+
+    #[test]
+    fn files_that_end_with_their_checksum_are_told_apart() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("state.bin");
+        let of = |text: &[u8]| {
+            fs::write(&path, [text, &crc32fast::hash(text).to_le_bytes()].concat()).unwrap();
+            [Input::of(&path, &path).unwrap().crc, Input::left(&path, &path).unwrap().crc]
+        };
+        let [[one, left_one], [two, left_two]] = [of(b"one"), of(b"two")];
+        assert!(one == two && left_one != left_two);
+        fs::write(&path, "x").unwrap();
+        assert_eq!(Input::left(&path, &path).unwrap().crc, crc32fast::hash(b"xx"));
+    }
 
     #[test]
     fn a_change_of_one_byte_a_lost_and_a_new_file_are_named() {

@@ -1,6 +1,6 @@
 //! The ledger `mass.csv`: where the mass is at every output instant, and the sums it rests on.
 
-use super::mark::Mark;
+use super::mark::{CURE, Mark};
 use super::{Error, whole_file};
 pub use crate::entry::Entry;
 use std::fs::{self, OpenOptions};
@@ -110,6 +110,8 @@ pub struct Ledger {
     entries: Vec<Entry>,
     /// Checksums of the header and of the lines.
     crcs: Vec<u32>,
+    /// The file ends with a line that a crash had torn.
+    torn: bool,
 }
 
 impl Ledger {
@@ -120,21 +122,24 @@ impl Ledger {
     pub fn create(path: &Path, exits: [&str; 5]) -> Result<Self, Error> {
         let header = header(exits);
         let crcs = vec![crc(&header)];
-        let ledger = Self { path: path.to_owned(), header, entries: Vec::new(), crcs };
+        let ledger = Self { path: path.to_owned(), header, entries: Vec::new(), crcs, torn: false };
         ledger.rewrite()?;
         Ok(ledger)
     }
 
-    /// Reads a ledger back to go on with it; a torn last line is dropped.
+    /// Reads a ledger back to go on with it; a torn last line is left out, and cut off before the file changes.
     ///
     /// # Errors
     /// [`Error::Io`]; [`Error::Damaged`] naming the first line that cannot be read.
     pub fn open(path: &Path) -> Result<Self, Error> {
-        let text = fs::read_to_string(path).map_err(Error::io(path, "read"))?;
+        let bytes = fs::read(path).map_err(Error::io(path, "read"))?;
+        // A byte that is no text makes a line that is none.
+        let text = String::from_utf8_lossy(&bytes);
         let mut lines = text.split_inclusive('\n').enumerate();
         let header = lines.next().map_or("", |(_, line)| line.trim_end());
         if !is_header(header) {
-            return Err(Error::damaged(path, format!("line 1 should be the header {}", COLUMNS.join(","))));
+            let problem = format!("line 1 should be the header {}; {CURE}", COLUMNS.join(","));
+            return Err(Error::damaged(path, problem));
         }
         let (mut entries, mut crcs) = (Vec::new(), vec![crc(header)]);
         let mut torn = false;
@@ -143,17 +148,14 @@ impl Ledger {
                 None => torn = true, // only the last line can lack its end
                 Some(line) => {
                     entries.push(Entry::parse(line).ok_or_else(|| {
-                        Error::damaged(path, format!("line {} is no line of a ledger: {line:?}", number + 1))
+                        let problem = format!("line {} is no line of a ledger: {line:?}; {CURE}", number + 1);
+                        Error::damaged(path, problem)
                     })?);
                     crcs.push(crc(line));
                 }
             }
         }
-        let ledger = Self { path: path.to_owned(), header: header.to_owned(), entries, crcs };
-        if torn {
-            ledger.rewrite()?;
-        }
-        Ok(ledger)
+        Ok(Self { path: path.to_owned(), header: header.to_owned(), entries, crcs, torn })
     }
 
     /// Appends a line.
@@ -161,6 +163,9 @@ impl Ledger {
     /// # Errors
     /// [`Error::Io`]; on a full disk the file keeps the lines it had.
     pub fn append(&mut self, entry: Entry) -> Result<(), Error> {
+        if std::mem::take(&mut self.torn) {
+            self.rewrite()?;
+        }
         let mut file =
             OpenOptions::new().append(true).open(&self.path).map_err(Error::io(&self.path, "open"))?;
         let before = file.metadata().map_err(Error::io(&self.path, "read"))?.len();
@@ -195,11 +200,11 @@ impl Ledger {
         Mark { count: count as u64, crc: crc.finalize() }
     }
 
-    /// Drops the lines after `mark`, where the checkpoint was written that a run goes on from; returns how many.
+    /// Are the lines up to `mark` those of then?
     ///
     /// # Errors
-    /// [`Error::Mismatch`] if the lines before it are not those of then; [`Error::Io`], the file then keeps all its lines.
-    pub fn truncate_to(&mut self, mark: Mark) -> Result<usize, Error> {
+    /// [`Error::Mismatch`] if they are not.
+    pub fn fits(&self, mark: Mark) -> Result<(), Error> {
         let (before, count) = (self.entries.len(), mark.count as usize);
         if count > before || self.mark_at(count) != mark {
             let what = if count > before {
@@ -207,12 +212,21 @@ impl Ledger {
             } else {
                 format!("its first {count} lines are not those that the checkpoint goes on from")
             };
-            let problem =
-                format!("{what}; put the file back as the run left it, or start again without --resume");
-            return Err(Error::mismatch(&self.path, problem));
+            return Err(Error::mismatch(&self.path, format!("{what}; {CURE}")));
         }
+        Ok(())
+    }
+
+    /// Drops the lines after `mark`, where the checkpoint was written that a run goes on from; returns how many.
+    ///
+    /// # Errors
+    /// As [`Ledger::fits`]; [`Error::Io`], the file then keeps all its lines.
+    pub fn truncate_to(&mut self, mark: Mark) -> Result<usize, Error> {
+        self.fits(mark)?;
+        let (before, count) = (self.entries.len(), mark.count as usize);
         self.entries.truncate(count);
         self.crcs.truncate(count + 1);
+        self.torn = false;
         self.rewrite()?;
         Ok(before - count)
     }

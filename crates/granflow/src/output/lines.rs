@@ -1,7 +1,7 @@
 //! A table that grows: `gauges.csv`, `sections.csv`. Whole lines are appended, and a run that goes on cuts off those that its
 //! checkpoint does not know.
 
-use super::mark::Mark;
+use super::mark::{CURE, Mark};
 use super::{Error, whole_file};
 use std::fs::{self, File, OpenOptions};
 use std::io::{BufRead, BufReader, Write};
@@ -14,6 +14,8 @@ pub struct Lines {
     file: File,
     count: u64,
     crc: crc32fast::Hasher,
+    /// Bytes up to the last line that is known.
+    known: u64,
 }
 
 impl Lines {
@@ -30,35 +32,32 @@ impl Lines {
 
     fn over(path: &Path) -> Result<Lines, Error> {
         let file = OpenOptions::new().append(true).open(path).map_err(Error::io(path, "open"))?;
-        Ok(Lines { path: path.to_owned(), file, count: 0, crc: crc32fast::Hasher::new() })
+        Ok(Lines { path: path.to_owned(), file, count: 0, crc: crc32fast::Hasher::new(), known: 0 })
     }
 
-    /// Takes a table up at a mark; what stands after it is cut off.
+    /// Takes a table up at a mark; [`Lines::cut`] cuts off what stands after it.
     ///
     /// # Errors
     /// [`Error::Io`]; [`Error::Mismatch`] where the header or the lines before the mark are not those of then.
     pub fn resume(path: &Path, header: &str, mark: Mark) -> Result<Lines, Error> {
         let mut from = BufReader::new(File::open(path).map_err(Error::io(path, "read"))?);
         let mut lines = Lines::over(path)?;
-        let other = |what: String| {
-            let cure = "put the file back as the run left it, or start again without --resume";
-            Error::mismatch(path, format!("{what}; {cure}"))
-        };
-        let (mut line, mut bytes) = (String::new(), 0);
+        let other = |what: String| Error::mismatch(path, format!("{what}; {CURE}"));
+        let mut line = Vec::new();
         for number in 0..=mark.count {
             line.clear();
-            bytes += from.read_line(&mut line).map_err(Error::io(path, "read"))? as u64;
-            let Some(whole) = line.strip_suffix('\n') else {
+            lines.known += from.read_until(b'\n', &mut line).map_err(Error::io(path, "read"))? as u64;
+            let Some(whole) = line.strip_suffix(b"\n") else {
                 let lines = mark.count;
                 return Err(other(format!(
                     "it holds {} whole lines below its header, the checkpoint goes on from {lines}",
                     number.saturating_sub(1)
                 )));
             };
-            if number == 0 && whole != header {
+            if number == 0 && whole != header.as_bytes() {
                 return Err(other(format!("line 1 should be the header {header}")));
             }
-            lines.crc.update(whole.as_bytes());
+            lines.crc.update(whole);
         }
         lines.count = mark.count;
         if lines.mark() != mark {
@@ -67,8 +66,15 @@ impl Lines {
                 "its first {count} lines are not those that the checkpoint goes on from"
             )));
         }
-        lines.file.set_len(bytes).map_err(Error::io(path, "write"))?;
         Ok(lines)
+    }
+
+    /// Cuts off what stands after the mark at which the table was taken up.
+    ///
+    /// # Errors
+    /// [`Error::Io`].
+    pub fn cut(&self) -> Result<(), Error> {
+        self.file.set_len(self.known).map_err(Error::io(&self.path, "write"))
     }
 
     /// Appends whole lines, each with its end.
@@ -185,6 +191,11 @@ mod tests {
         let whole = fs::read_to_string(&path).unwrap();
         fs::write(&path, format!("{whole}road,0.7")).unwrap();
         let mut again = Lines::resume(&path, HEADER, mark).unwrap();
+        assert!(
+            fs::read_to_string(&path).unwrap().ends_with("road,0.7"),
+            "nothing is touched before it is to be"
+        );
+        again.cut().unwrap();
         again.append("road,0.5,2.5\nhouse,0.5,0.25\n").unwrap();
         assert_eq!(fs::read_to_string(&path).unwrap(), whole);
         assert_eq!(again.mark(), lines.mark());

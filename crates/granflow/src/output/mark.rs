@@ -2,6 +2,10 @@
 
 use serde::{Deserialize, Serialize};
 
+/// What helps where a file of a run is not as the run left it and cannot be made again.
+pub(super) const CURE: &str =
+    "put the file back as the run left it, or compute the run anew, by the same command without --resume";
+
 /// The first records of a file that grows: how many, and the CRC-32 of them all in their order.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
 pub struct Mark {

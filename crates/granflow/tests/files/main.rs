@@ -1,5 +1,6 @@
 //! One small run on a mountain and one on a chute: every kind of file opens and holds what the run left.
 
+mod damaged;
 mod going_on;
 mod resumed;
 mod written;

@@ -75,10 +75,15 @@ impl Left {
     }
 
     /// What is done about lost files, if there are some; where the run goes on it makes all files at its new end.
-    pub fn notice(&self, goes_on: bool) -> Option<String> {
-        let done = match goes_on {
-            true => "all files are made anew when this run ends",
-            false => "all files are made again, from result.nc and the checkpoint",
+    /// The checkpoint before the last step is older than what the others are made of: it may be gone for good.
+    pub fn notice(&self, goes_on: bool, no_step_back: bool) -> Option<String> {
+        let done = match (goes_on, no_step_back) {
+            (true, _) => "all files are made anew when this run ends",
+            (false, false) => "all files are made again, from result.nc and the checkpoint",
+            (false, true) => {
+                "all files but the checkpoint before the last step are made again; to a later end this run will go on from its end, \
+                 which had cut that step"
+            }
         };
         (!self.is_whole()).then(|| format!("{}: {done}", self.lost))
     }

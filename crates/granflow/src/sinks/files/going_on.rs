@@ -3,14 +3,17 @@
 use super::checkpoints::{self, Taken};
 use super::ended::Left;
 use super::{BeginError, Files, Series, frames_in, ledger_in};
+use crate::output;
 use crate::output::checkpoint::Origin;
 use crate::output::folder::Folder;
 use crate::output::frames::Frames;
 use crate::output::ledger::Ledger;
+use crate::output::lines::Lines;
 use crate::output::summary::StopReason;
 use crate::run::{Run, reached};
 use crate::watch::Watch;
 use granflow_case::{Change, Concerns, RunPlan};
+use std::path::Path;
 
 impl Files {
     /// Takes up the files in `folder` at their checkpoint, and puts `run` where it was. With another case the run goes on as far as
@@ -40,28 +43,30 @@ impl Files {
         run.stepper_mut().release_buffers();
         let (Taken { due, marks, changes, past, ended, .. }, place, left) =
             taken_up(&folder, plan, &origin, run)?;
+        let [frames, ledger] = [frames_in(directory), ledger_in(directory)];
+        let tables = series.paths(directory);
+        let needed = [&frames].into_iter().filter(|_| left.is_none()).chain([&ledger]);
+        if let Some(gone) = needed.chain(tables.iter().flatten()).find(|path| !path.exists()) {
+            return Err(refused(format!("{} is gone, which the checkpoint counts on", gone.display())));
+        }
+        // All are looked at before one is changed.
+        let mut ledger = Ledger::open(&ledger)?;
+        ledger.fits(marks.ledger)?;
+        let tables = series.resume(directory, marks.series)?;
         if let Some(left) = &left {
             left.put_back(directory, plan, run, marks.frames)?;
         }
-        let [frames, ledger] = [frames_in(directory), ledger_in(directory)];
-        let tables = series.paths(directory);
-        for path in [&frames, &ledger].into_iter().chain(tables.iter().flatten()) {
-            if !path.exists() {
-                let problem = format!("{} is gone, which the checkpoint counts on", path.display());
-                return Err(refused(problem));
-            }
-        }
         let (mut frames, _torn) = Frames::open(&frames)?;
-        let mut ledger = Ledger::open(&ledger)?;
         frames.truncate_to(marks.frames)?;
         ledger.truncate_to(marks.ledger)?;
-        let tables = series.resume(directory, marks.series)?;
+        tables.iter().flatten().try_for_each(Lines::cut)?;
         let [frame, line, look] = due.next;
         series.resumed(look, run.time());
+        let no_step_back = left.is_some() && changes.is_empty() && forgotten(directory, &origin, run, ended)?;
         let mut files = Self::over(folder, plan, origin, command, run, (frames, ledger, tables), series)?;
         (files.past, files.at_end) = (past, place == Place::End && changes.is_empty());
         files.schedule.resume([frame, line]);
-        files.notices.extend(left.and_then(|left| left.notice(!changes.is_empty())));
+        files.notices.extend(left.and_then(|left| left.notice(!changes.is_empty(), no_step_back)));
         if !changes.is_empty() {
             let ended = ended.map(|reason| (reason, place));
             files.go_on(run, &changes, due.every, ended)?;
@@ -105,6 +110,22 @@ enum Place {
     End,
     /// At the checkpoint before the step that its end had cut.
     BeforeEnd,
+}
+
+/// Removes the checkpoint before the last step where it cannot be read: it would be refused later, and nothing makes it again.
+fn forgotten(
+    directory: &Path,
+    origin: &Origin,
+    run: &dyn Run,
+    ended: Option<StopReason>,
+) -> Result<bool, BeginError> {
+    let path = checkpoints::before_end_in(directory);
+    if ended != Some(StopReason::EndTime) || (path.exists() && checkpoints::read(&path, origin, run).is_ok())
+    {
+        return Ok(false);
+    }
+    output::remove_if_there(&path)?;
+    Ok(true)
 }
 
 /// What of the friction changes.
