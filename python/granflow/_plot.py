@@ -17,6 +17,8 @@ if TYPE_CHECKING:
 
 #: What a map shows where nobody names another variable, the first that there is.
 _SHOWN = ("peak_thickness", "deposit", "standing_layer", "thickness")
+#: What is measured by the threshold of a run.
+_THICKNESSES = ("peak_thickness", "deposit", "thickness")
 
 
 @xr.register_dataset_accessor("granflow")  # type: ignore[no-untyped-call]
@@ -59,15 +61,17 @@ class Results:
         *,
         time: float | None = None,
         ax: Axes | None = None,
-        least: float = 0.0,
+        least: float | None = None,
         **options: Any,
     ) -> Axes:
-        """A variable as a map, on the shaded mountain where there is one.
+        """A variable as a map, on the shaded mountain where there is one, in the colours of the program's figures.
 
         Args:
-            name: the variable; by default the peak of the thickness, or the layer of a pile.
+            name: the variable; by default the peak of the thickness, the layer of a pile, or of an ensemble how probable the first
+                threshold is.
             time: of a series the nearest instant; None is the last.
-            least: what is not larger is not shown.
+            least: what is not larger is not shown; None leaves out what is thinner than the threshold of the run, and 0 of a pile or an
+                ensemble.
             options: for ``Axes.pcolormesh``: ``cmap``, ``vmin``, ``vmax``, ...
         """
         ax = _axes(ax)
@@ -75,9 +79,9 @@ class Results:
         y, x = (field[dimension].values for dimension in field.dims)
         if "bed" in self._ds:
             self._shade(ax)
-        values = np.where(field.values > least, field.values, np.nan)
-        drawn = ax.pcolormesh(x, y, values, shading="nearest", **{"cmap": "viridis", **options})
-        ax.figure.colorbar(drawn, ax=ax, label=_label(field), shrink=0.8)
+        values = np.where(self._seen(field, least), field.values, np.nan)
+        drawn = ax.pcolormesh(x, y, values, shading="nearest", **{**_colours(str(field.name), values), **options})
+        _colour_bar(ax, drawn, _label(field))
         ax.set(aspect="equal", xlabel=self._along("x"), ylabel=self._along("y"), title=self._title(field))
         return ax
 
@@ -86,7 +90,7 @@ class Results:
         line: ArrayLike | None = None,
         *,
         time: float | None = None,
-        exaggeration: float = 1.0,
+        exaggeration: float | None = None,
         ax: Axes | None = None,
     ) -> Axes:
         """Bed and thickness along a line, by default the path of the centre of mass.
@@ -94,7 +98,7 @@ class Results:
         Args:
             line: its points, shape (points, 2); the default is carried on straight to all that was reached.
             time: the nearest instant; None is the last.
-            exaggeration: the thickness is drawn so many times as large.
+            exaggeration: the thickness is drawn so many times as large; None takes what can be seen, and the title says it.
         """
         if "bed" not in self._ds or not self.is_plane:
             raise ValueError("a section needs a run on terrain")
@@ -102,8 +106,10 @@ class Results:
         points = self._reach(self.path()) if line is None else np.asarray(line, dtype=np.float64)
         along, places = _walk(points, float(abs(self._ds.x[1] - self._ds.x[0])))
         field = self._instant("thickness", time)
-        bed = _sampled(self._ds.bed, places)
-        surface = bed + exaggeration * _sampled(field, places)
+        bed, thickness = _sampled(self._ds.bed, places), _sampled(field, places)
+        if exaggeration is None:
+            exaggeration = _exaggeration(float(np.nanmax(bed) - np.nanmin(bed)), float(np.nanmax(thickness)))
+        surface = bed + exaggeration * thickness
         ax.fill_between(along, bed, np.nanmin(bed), color="0.85", linewidth=0)
         ax.plot(along, bed, color="0.3", linewidth=1.0)
         ax.fill_between(along, bed, surface, where=surface > bed, color="tab:blue", linewidth=0)
@@ -163,7 +169,10 @@ class Results:
         return ax
 
     def surface(self, *, time: float | None = None, ax: Axes | None = None, **options: Any) -> Axes:
-        """The standing layer of a sandpile, or the thickness, in 3-D; options are for ``plot_surface``."""
+        """The standing layer of a sandpile, or the thickness, in 3-D; options are for ``plot_surface``.
+
+        On terrain it is the mountain with what lies on it, in the colours of :meth:`map`.
+        """
         if not self.is_plane:
             raise ValueError("a surface has two dimensions")
         if ax is None:
@@ -172,12 +181,26 @@ class Results:
             ax = plt.figure().add_subplot(projection="3d")
         field = self._instant(self._named(None, ("standing_layer", "thickness")), time)
         y, x = (field[dimension].values for dimension in field.dims)
-        height = field.values + (self._ds.bed.values if "bed" in self._ds else 0.0)
         drawn: Any = ax
-        drawn.plot_surface(*np.meshgrid(x, y), height, **{"cmap": "copper", "linewidth": 0, **options})
+        if "bed" in self._ds:
+            height, label = self._ds.bed.values + field.fillna(0.0).values, "elevation (m)"
+            style = {"facecolors": self._painted(field), "rstride": 1, "cstride": 1, "shade": False}
+            drawn.set_box_aspect((np.ptp(x), np.ptp(y), max(np.nanmax(height) - np.nanmin(height), np.ptp(x) / 5.0)))
+        else:
+            height, label, style = field.values, _label(field), {"cmap": "copper"}
+        drawn.plot_surface(*np.meshgrid(x, y), height, **{**style, "linewidth": 0, **options})
         ax.set(xlabel=self._along("x"), ylabel=self._along("y"), title=self._title(field))
-        drawn.set_zlabel(_label(field))
+        drawn.set_zlabel(label)
         return ax
+
+    def _painted(self, field: xr.DataArray) -> NDArray[np.float64]:
+        """The colours of the cells of a mountain with what lies on it."""
+        values = np.where(self._seen(field, None), field.values, np.nan)
+        colours = _colours(str(field.name), values)["cmap"]
+        largest = np.nanmax(values) if np.isfinite(values).any() else 1.0
+        shade = 0.3 + 0.6 * self._hillshade()
+        grey = np.dstack([shade, shade, shade, np.ones_like(shade)])
+        return np.where(np.isnan(values)[..., None], grey, colours(np.nan_to_num(values) / largest))
 
     def animate(self, name: str | None = None, *, interval: int = 100, **options: Any) -> FuncAnimation:
         """A series over time as an animation, which a notebook plays: ``HTML(ds.granflow.animate().to_jshtml())``.
@@ -191,11 +214,12 @@ class Results:
         from matplotlib.animation import FuncAnimation
 
         series = self._ds[self._named(name, ("thickness", "standing_layer"))]
-        largest = float(series.max())
+        largest = float(np.abs(series).max())
         figure, ax = plt.subplots()
         mesh: Any
         if self.is_plane:
-            self.map(str(series.name), time=0.0, ax=ax, **{"vmin": 0.0, "vmax": largest, **options})
+            least = min(0.0, float(series.min()))
+            self.map(str(series.name), time=0.0, ax=ax, **{"vmin": -largest if least < 0.0 else 0.0, "vmax": largest, **options})
             mesh = ax.collections[-1]
         else:
             (mesh,) = ax.plot(series[series.dims[-1]], series[0], **options)
@@ -204,7 +228,7 @@ class Results:
         def draw(instant: int) -> tuple[Any]:
             values = series.isel(time=instant).values
             if self.is_plane:
-                mesh.set_array(np.where(values > 0.0, values, np.nan))
+                mesh.set_array(np.where(self._seen(series.isel(time=instant), None), values, np.nan))
             else:
                 mesh.set_ydata(values)
             ax.set_title(self._title(series.isel(time=instant)))
@@ -219,7 +243,8 @@ class Results:
             if name not in self._ds:
                 raise KeyError(f"{name!r}; there are {', '.join(map(str, self._ds.data_vars))}")
             return name
-        found = next((one for one in usual if one in self._ds), None)
+        probable = [str(one) for one in self._ds.data_vars if str(one).startswith("exceedance_")]
+        found = next((one for one in (*usual, *probable, "count") if one in self._ds), None)
         if found is None:
             raise KeyError(f"this dataset has none of {', '.join(usual)}: name a variable")
         return found
@@ -233,22 +258,41 @@ class Results:
             return field
         return field.isel(time=-1 if time is None else self._nearest(time))
 
-    def _shade(self, ax: Axes) -> None:
+    def _seen(self, field: xr.DataArray, least: float | None) -> NDArray[np.bool_]:
+        """The cells of which a map shows the value."""
+        name, known = str(field.name), ~np.isnan(field.values)
+        if least is not None:
+            return np.asarray(known & (field.values > least))
+        if name in ("bed", "surface"):
+            return np.asarray(known)
+        threshold = float(str(self._ds.attrs.get("threshold", "0")).split()[0])
+        by: Any = field
+        if "thickness" in self._ds and name not in _THICKNESSES:
+            by = self._ds["thickness"].sel(time=field.time) if "time" in field.coords else self._ds.get("peak_thickness", field)
+        return np.asarray(known & (by.values > threshold))
+
+    def _hillshade(self) -> NDArray[np.float64]:
+        """The light on the mountain, 0 to 1, row 0 in the south."""
         from matplotlib.colors import LightSource
 
-        bed, x, y = self._ds.bed.values.astype(float), self._ds.x.values, self._ds.y.values
+        bed, x = self._ds.bed.values.astype(float), self._ds.x.values
         cell = float(x[1] - x[0])
-        # Row 0 lies in the south, LightSource takes it for the north.
-        shade = LightSource(azdeg=315, altdeg=45).hillshade(np.flipud(bed), dx=cell, dy=cell)
-        extent = (x[0] - cell / 2, x[-1] + cell / 2, y[0] - cell / 2, y[-1] + cell / 2)
-        ax.imshow(shade, cmap="gray", extent=extent, alpha=0.7, vmin=0.0, vmax=1.0)
+        # LightSource takes row 0 for the north.
+        return np.flipud(LightSource(azdeg=315, altdeg=45).hillshade(np.flipud(bed), dx=cell, dy=cell))
+
+    def _shade(self, ax: Axes) -> None:
+        x, y = self._ds.x.values, self._ds.y.values
+        half = float(x[1] - x[0]) / 2
+        extent = (x[0] - half, x[-1] + half, y[0] - half, y[-1] + half)
+        ax.imshow(self._hillshade(), cmap="gray", extent=extent, origin="lower", alpha=0.7, vmin=0.0, vmax=1.0)
 
     def _along(self, axis: str) -> str:
-        units = self._ds[axis].attrs.get("units", "1")
-        return axis if units == "1" else f"{axis} ({units})"
+        return _with_units(axis, self._ds[axis].attrs)
 
     def _title(self, field: xr.DataArray) -> str:
         title = str(self._ds.attrs.get("title", ""))
+        if str(field.name).startswith("exceedance_"):
+            title = f"{title}\n{field.attrs.get('long_name', '')}".strip()
         if "time" not in field.coords or field.coords["time"].ndim:
             return title
         units = self._ds.time.attrs.get("units", "1")
@@ -264,9 +308,49 @@ def _axes(ax: Axes | None) -> Axes:
     return plt.subplots()[1]
 
 
+def _colours(name: str, values: NDArray[np.float64]) -> dict[str, Any]:
+    """The scale of colours of a quantity: that of the program's figures (`colours.rs` of granflow-figures)."""
+    import matplotlib
+    from matplotlib.colors import ListedColormap
+
+    def part(colours: str, first: float, last: float) -> ListedColormap:
+        return ListedColormap(matplotlib.colormaps[colours](np.linspace(first, last, 256)))
+
+    if name.startswith("exceedance_"):
+        return {"cmap": matplotlib.colormaps["viridis"], "vmin": 0.0, "vmax": 1.0}
+    if np.nanmin(values, initial=0.0) < 0.0 and name not in ("bed", "surface"):
+        largest = np.nanmax(np.abs(values))
+        return {"cmap": matplotlib.colormaps["RdBu_r"], "vmin": -largest, "vmax": largest}
+    if name.endswith(_THICKNESSES):
+        return {"cmap": part("inferno", 0.96, 0.16)}
+    if name.endswith(("speed", "pressure")) or name.startswith("velocity"):
+        return {"cmap": part("YlGnBu", 0.12, 1.0)}
+    return {"cmap": matplotlib.colormaps["viridis"]}
+
+
+def _exaggeration(relief: float, thickness: float) -> float:
+    """1, 2, 5, 10, ...: a layer is drawn at most a tenth as high as the relief, as far as that can be."""
+    steps = [factor * 10.0**power for power in range(4) for factor in (1.0, 2.0, 5.0)]
+    fitting = [step for step in steps if step * thickness <= 0.1 * relief]
+    return fitting[-1] if fitting and thickness > 0.0 else 1.0
+
+
+def _colour_bar(ax: Axes, drawn: Any, label: str) -> None:
+    """A bar as high as the map beside it, whatever shape that has."""
+    from mpl_toolkits.axes_grid1 import make_axes_locatable
+
+    beside = make_axes_locatable(ax).append_axes("right", size="4%", pad=0.1)
+    ax.figure.colorbar(drawn, cax=beside, label=label)
+
+
 def _label(field: xr.DataArray) -> str:
-    units = field.attrs.get("units", "1")
-    name = str(field.name).replace("_", " ")
+    name = "share of the members" if str(field.name).startswith("exceedance_") else str(field.name).replace("_", " ")
+    return _with_units(name, field.attrs)
+
+
+def _with_units(name: str, attrs: dict[Any, Any]) -> str:
+    """A name with its unit, as people write it."""
+    units = str(attrs.get("units", "1")).replace("m s-1", "m/s")
     return name if units == "1" else f"{name} ({units})"
 
 

@@ -83,3 +83,34 @@ def test_the_program_is_the_same_program(tmp_path):
     bad = granflow_("run", "silo.toml", "--set", "grid.boundry=open")
     assert bad.returncode == 2 and "did you mean `boundary`?" in bad.stderr
     assert granflow_("frobnicate").returncode == 2
+
+
+def test_a_map_shows_what_is_thicker_than_the_threshold(slide):
+    series = slide.granflow.map("thickness", time=20.0).collections[-1].get_array()
+    instant = slide.thickness.sel(time=20.0, method="nearest").values
+    assert np.array_equal(np.ma.getmaskarray(series), ~(instant > 0.01))
+    backward = slide.assign(velocity_x=-slide.velocity_x)
+    mesh = backward.granflow.map("velocity_x", time=20.0).collections[-1]
+    assert np.nanmin(mesh.get_array()) < 0.0 and mesh.get_clim()[0] == -mesh.get_clim()[1]
+    begin = slide.granflow.map("arrival_time").collections[-1].get_array()
+    assert np.ma.count(begin) > 0 and begin.min() == 0.0, "the release is shown, which was there from the start"
+
+
+def test_a_section_says_how_much_it_exaggerates(slide):
+    assert ", thickness x " in slide.granflow.section().get_title()
+    assert "thickness x" not in slide.granflow.section(exaggeration=1.0).get_title()
+
+
+def test_the_mountain_is_drawn_with_what_lies_on_it(slide):
+    ax = slide.granflow.surface(time=20.0)
+    assert ax.get_zlabel() == "elevation (m)"
+    colours = ax.collections[-1].get_facecolor()
+    assert np.any(np.ptp(colours[:, :3], axis=1) > 0.2), "what flows is coloured on a grey mountain"
+
+
+def test_an_ensemble_shows_how_probable_it_is(mountain):
+    case = mountain.case().set("time", {"end": 3.0})
+    vary = {"material.friction.coulomb.mu": {"uniform": [0.3, 0.4]}}
+    case.set("ensemble", {"members": 2, "vary": vary, "exceed": {"peak_pressure": [1.0]}})
+    ax = granflow.Ensemble(case).run(progress=False).granflow.plot()
+    assert "exceeded 1 kPa" in ax.get_title() and ax.collections[-1].get_clim() == (0.0, 1.0)
