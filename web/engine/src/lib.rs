@@ -5,6 +5,10 @@
 //! returns a negative number.
 
 mod answer;
+// The mountain of `granflow demo`, by the program's own source.
+#[allow(dead_code)]
+#[path = "../../../crates/granflow-cli/src/mountain.rs"]
+mod demo;
 mod fma;
 mod held;
 
@@ -189,6 +193,17 @@ pub unsafe extern "C" fn granflow_raster(start: *const u8, length: usize) -> i32
         let (about, values) = answer::raster(unsafe { text(start, length) }?)?;
         (page.answer, page.numbers) = (about.to_string(), values);
         Ok(page.numbers.len() as i32)
+    })
+}
+
+/// Writes the elevation and the release of `granflow demo` as files `mountain.asc` and `release.geojson`.
+#[unsafe(no_mangle)]
+pub extern "C" fn granflow_demo() -> i32 {
+    page(|_| {
+        for (name, text) in [("mountain.asc", demo::elevation()), ("release.geojson", demo::release())] {
+            std::fs::write(name, text).map_err(answer::plain)?;
+        }
+        Ok(0)
     })
 }
 

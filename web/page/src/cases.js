@@ -43,21 +43,24 @@ export function mountain({ title, dem, crs, cell, release, thickness, law, param
   return lines.join('\n')
 }
 
-// Tables for the sand, in [0, 1] x [0, 1].
+// Tables for the sand, in [0, 1] x [0, 1]: the mask, regions cut out, edges with a wall.
 export const TABLES = {
-  square: { title: 'square', lines: [] },
-  disc: { title: 'disc', lines: ['mask.disc = { centre = [0.5, 0.5], radius = 0.48 }'] },
-  l: { title: 'L', lines: ['mask.box = [0.0, 1.0, 0.0, 1.0]', 'cut = [{ box = [0.5, 1.0, 0.5, 1.0] }]'] },
-  hole: { title: 'square with a hole', lines: ['cut = [{ disc = { centre = [0.5, 0.5], radius = 0.12 } }]'] },
-  walls: {
-    title: 'square with two walls', lines: [],
-    after: ['[[table.wall]]', 'on.box = [-0.01, 0.01, 0.0, 1.0]', '[[table.wall]]', 'on.box = [0.0, 1.0, -0.01, 0.01]'],
-  },
+  square: { title: 'square' },
+  disc: { title: 'disc', mask: 'disc = { centre = [0.5, 0.5], radius = 0.48 }' },
+  l: { title: 'L', mask: 'box = [0.0, 1.0, 0.0, 1.0]', cut: ['box = [0.5, 1.0, 0.5, 1.0]'] },
+  hole: { title: 'square with a hole', cut: ['disc = { centre = [0.5, 0.5], radius = 0.12 }'] },
+  walls: { title: 'square with two walls', walls: ['box = [-0.01, 0.01, 0.0, 1.0]', 'box = [0.0, 1.0, -0.01, 0.01]'] },
 }
+// Files of what was drawn on a table.
+export const DRAWN = { outline: 'table.geojson', hole: 'holes.geojson', wall: 'walls.geojson' }
 
-// Sand on a table; `sources` is a list of { x, y, radius, rate }, a rate everywhere without a radius.
-export function sand({ table, cells, scheme, sources, direct }) {
-  const { lines, after = [] } = TABLES[table]
+// Sand on a table; `sources` is a list of { x, y, radius, rate }, a rate everywhere without a radius; `drawn` says which files of
+// DRAWN there are.
+export function sand({ table, cells, scheme, sources, direct, drawn = [] }) {
+  const { mask, cut = [], walls = [] } = TABLES[table]
+  const file = kind => (drawn.includes(kind) ? [`file = "${DRAWN[kind]}"`] : [])
+  const [holes, edges] = [[...cut, ...file('hole')], [...walls, ...file('wall')]]
+  const outline = file('outline')[0] ?? mask
   const poured = sources.flatMap(({ x, y, radius, rate }) => [
     '[[source]]', `rate = ${number(rate)}`,
     ...(radius ? [`on.disc = { centre = [${number(x)}, ${number(y)}], radius = ${number(radius)} }`] : []),
@@ -65,7 +68,9 @@ export function sand({ table, cells, scheme, sources, direct }) {
   return [
     'title = "Sand on a table"', 'model = "hadeler_kuttler"', '',
     '[grid]', `x = { from = 0.0, to = 1.0, cells = ${cells} }`, `y = { from = 0.0, to = 1.0, cells = ${cells} }`, '',
-    '[table]', 'open = "all"', ...lines, ...after, '', ...poured, '',
+    '[table]', 'open = "all"', ...(outline ? [`mask.${outline}`] : []),
+    ...(holes.length ? [`cut = [${holes.map(region => `{ ${region} }`).join(', ')}]`] : []),
+    ...edges.flatMap(region => ['[[table.wall]]', `on.${region}`]), '', ...poured, '',
     '[scheme]', `name = "${scheme}"`, '',
     '[time]', ...(direct ? ['until = "steady"', 'method = "direct"'] : ['until = "steady"', 'end = 1000.0']), '',
   ].join('\n')

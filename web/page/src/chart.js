@@ -6,6 +6,11 @@ const nice = span => {
 }
 
 // `lines`: [{ x, y, colour, width, dashed }]; `range`: [x0, x1, y0, y1], or what the lines span; marks: [{ x, colour }].
+/**
+ * @param {HTMLCanvasElement} canvas
+ * @param {{ x: ArrayLike<number>, y: ArrayLike<number>, colour?: string, width?: number, dashed?: boolean }[]} lines
+ * @param {{ range?: number[], xLabel?: string, yLabel?: string, marks?: { x: number, colour: string }[] }} how
+ */
 export function chart(canvas, lines, { range, xLabel = '', yLabel = '', marks = [] } = {}) {
   const scale = window.devicePixelRatio || 1
   const [width, height] = [canvas.clientWidth, canvas.clientHeight]

@@ -1,4 +1,5 @@
 // The page's side of the worker: every call of the engine as a promise.
+import { decoded } from './base85.js'
 import { Refused } from './engine.js'
 
 export class Client {
@@ -25,9 +26,8 @@ export class Client {
   }
 }
 
-// Bytes from the text that the build put into the page: gzip in base64.
+// Bytes from the text that the build put into the page: gzip in letters.
 export async function unpacked(text) {
-  const packed = Uint8Array.from(atob(text), letter => letter.charCodeAt(0))
-  const stream = new Blob([packed]).stream().pipeThrough(new DecompressionStream('gzip'))
+  const stream = new Blob([decoded(text)]).stream().pipeThrough(new DecompressionStream('gzip'))
   return new Uint8Array(await new Response(stream).arrayBuffer())
 }

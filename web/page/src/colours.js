@@ -36,20 +36,26 @@ export function hillshade(z, columns, rows, cell) {
   return shade
 }
 
-// Paints a field over a shaded ground into RGBA bytes; what is below `least` shows the ground.
-export function paint(bytes, shade, field, { scale, most, least, ground = [222, 219, 211] }) {
+// Shaded ground as RGBA bytes; nothing is there without an elevation.
+export function shaded(shade, ground = [222, 219, 211]) {
+  const bytes = new Uint8Array(4 * shade.length)
+  shade.forEach((bright, k) => bytes.set([...ground.map(value => value * bright), bright > 0 ? 255 : 0], 4 * k))
+  return bytes
+}
+
+const LEVELS = 256
+const tables = Object.fromEntries(Object.keys(SCALES).map(scale => [scale, Array.from({ length: LEVELS }, (_, k) => colour(scale, k / (LEVELS - 1)))]))
+
+// Paints a field over shaded ground into RGBA bytes, where it is above `least`.
+export function paint(bytes, ground, shade, field, { scale, most, least }) {
+  bytes.set(ground)
+  if (!field) return
   for (let k = 0; k < shade.length; k++) {
-    const bright = shade[k]
-    let [r, g, b] = ground
-    const value = field ? field[k] : 0
-    if (value > least) {
-      const [fr, fg, fb] = colour(scale, value / most)
-      const share = 0.55 + 0.4 * Math.min(1, value / most)
-      r += share * (fr - r); g += share * (fg - g); b += share * (fb - b)
-    }
-    bytes[4 * k] = r * bright
-    bytes[4 * k + 1] = g * bright
-    bytes[4 * k + 2] = b * bright
-    bytes[4 * k + 3] = 255
+    const value = field[k]
+    if (!(value > least) || !shade[k]) continue
+    const t = Math.min(1, value / most)
+    const share = 0.55 + 0.4 * t
+    const stop = tables[scale][Math.round(t * (LEVELS - 1))]
+    for (let c = 0, at = 4 * k; c < 3; c++, at++) bytes[at] += share * (stop[c] * shade[k] - bytes[at])
   }
 }

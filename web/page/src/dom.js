@@ -42,7 +42,7 @@ export function complain(place, error) {
   place.hidden = !error
   if (!error) return
   const where = [error.line ? `line ${error.line}` : '', error.key ? `\`${error.key}\`` : ''].filter(Boolean).join(', ')
-  place.append(make('strong', {}, 'This cannot run. '), where ? `${where}: ` : '', error.message,
+  place.append(make('div', {}, make('strong', {}, 'This cannot run. '), where ? `${where}: ` : '', error.message),
     ...(error.help ?? []).map(line => make('div', { class: 'cure' }, line)))
 }
 

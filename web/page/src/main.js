@@ -11,10 +11,12 @@ const client = new Client(worker)
 const started = unpacked(wasm).then(bytes => client.call('start', bytes))
 const tabs = {}
 
+const buttons = () => /** @type {HTMLElement[]} */ ([...document.querySelectorAll('[role=tab]')])
+
 async function show(name) {
-  for (const tab of document.querySelectorAll('[role=tab]')) {
+  for (const tab of buttons()) {
     const here = tab.dataset.tab === name
-    tab.setAttribute('aria-selected', here)
+    tab.setAttribute('aria-selected', String(here))
     tab.tabIndex = here ? 0 : -1
     document.getElementById(tab.dataset.tab).hidden = !here
     if (!here) tabs[tab.dataset.tab]?.player.pause()
@@ -25,7 +27,7 @@ async function show(name) {
 }
 
 function listen() {
-  const all = [...document.querySelectorAll('[role=tab]')]
+  const all = buttons()
   for (const [k, tab] of all.entries()) {
     tab.addEventListener('click', () => show(tab.dataset.tab))
     tab.addEventListener('keydown', event => {
@@ -55,6 +57,13 @@ window.granflow = {
   run: (text, overrides) => started.then(() => client.call('run', text, overrides)),
   // Puts a file where a case finds it.
   put: (name, bytes) => started.then(() => client.call('put', name, bytes)),
+  // The same of texts [name, text], one of which is case.toml.
+  runFiles: async files => {
+    for (const [name, text] of files) await window.granflow.put(name, new TextEncoder().encode(text))
+    return window.granflow.run(files.find(([name]) => name === 'case.toml')[1])
+  },
+  // The same of the run that stands in a tab.
+  checksums: name => client.call('checksums', tabs[name].run().handle),
   memory: () => client.call('memory'),
   tabs, show,
 }

@@ -1,52 +1,52 @@
-// A mountain slides: built-in or dropped, with a release from a file or drawn, to its rest.
+// A mountain slides: built-in or given, with a release from a file or drawn, to its rest.
 import { LAWS, mountain as caseOf } from './cases.js'
 import { chart } from './chart.js'
 import { gradient } from './colours.js'
 import { button, choice, complain, download, fixed, make, slider } from './dom.js'
-import { isElevation, isRelease, read, rings } from './drop.js'
-import { MOUNTAINS, files, polygon } from './mountains.js'
+import { MOUNTAINS } from './mountains.js'
 import { Player, serial } from './player.js'
-import { Relief } from './relief.js'
+import { PICTURE, Relief } from './relief.js'
+import { Site } from './site.js'
+import { zip } from './zip.js'
 
-// What can be laid over the relief: field, words, unit, colours.
+// What can be laid over the relief: words, unit, colours, and the least that is seen.
 const SHOWN = {
-  thickness: ['Thickness', 'm', 'heat'], speed: ['Speed', 'm/s', 'blue'], peak_thickness: ['Greatest thickness so far', 'm', 'heat'],
-  peak_speed: ['Greatest speed so far', 'm/s', 'blue'], deposit: ['Deposit', 'm', 'heat'],
+  thickness: ['Thickness', 'm', 'heat', 0.01], speed: ['Speed', 'm/s', 'blue', 0.1], peak_thickness: ['Greatest thickness so far', 'm', 'heat', 0.01],
+  peak_speed: ['Greatest speed so far', 'm/s', 'blue', 0.1], deposit: ['Deposit', 'm', 'heat', 0.01],
 }
-const MAPS = ['peak_thickness', 'peak_speed', 'deposit']
-const LEAST = { thickness: 0.01, peak_thickness: 0.01, deposit: 0.01, speed: 0.1, peak_speed: 0.1 }
+const titles = all => Object.fromEntries(Object.entries(all).map(([key, { title }]) => [key, title]))
 
 export function mountain(client, place) {
   const chosen = { mountain: 'gully', law: 'coulomb', thickness: 1, scheme: 'energy_stable_2', end: 400, shown: 'thickness', cell: 0, pace: 10 }
   const parameters = {}
-  let given = null // a dropped elevation model: { name, raster }
-  let release = null // { name, ring lines in coordinates }
-  let drawing = null // vertices of a release under way, in cells
+  const site = new Site(client)
+  let drawing = null // corners of a release under way, in coordinates
+  /** @type {import('./types').Run} */
   let run = null
-  let field = null
-  let gauge = null // { cell: [i, j], times, thickness, speed }
+  let stride = 1 // cells for each point of the picture
+  let gauge = null // { at: [x, y], cell, times, thickness, speed }
+  let relief = null
 
   const error = make('div', { class: 'error', role: 'alert', hidden: true })
   const view = make('div', { class: 'relief' })
-  const clock = make('p', { class: 'clock', 'aria-live': 'polite' })
+  const clock = make('p', { class: 'clock', 'aria-live': 'off' })
   const notes = make('ul', { class: 'notes' })
-  const series = make('canvas', { class: 'chart', role: 'img', 'aria-label': 'No place was chosen yet' })
+  const series = make('canvas', { class: 'chart', role: 'img', hidden: true })
   const legend = make('div', { class: 'legend' })
   const sliders = make('div', { class: 'row' })
-  let relief = null
 
   const player = new Player({
     ask: async limits => {
-      const state = await client.call('advance', run.handle, limits, names())
-      Object.assign(run, state)
-      combine(state.fields)
-      return state.ended
+      Object.assign(run, await client.call('watch', run.handle, limits, watched()))
+      note()
+      return run.ended
     },
     show: draw,
     changed: () => {
       play.textContent = player.playing ? 'Pause' : 'Run'
       play.disabled = player.ended || !run
       step.disabled = play.disabled || player.playing
+      clock.setAttribute('aria-live', player.playing ? 'off' : 'polite')
     },
     failed: reason => complain(error, reason),
     pace: () => chosen.pace,
@@ -54,175 +54,201 @@ export function mountain(client, place) {
   })
   const play = button('Run', () => (player.playing ? player.pause() : player.play()), { class: 'main' })
   const step = button('One step', () => player.step())
-  const draws = button('Draw a release', toggleDrawing, { 'aria-pressed': 'false' })
 
-  // The fields to ask for, and from them the one that is shown.
-  const names = () => ['thickness', 'speed', ...(MAPS.includes(chosen.shown) ? [chosen.shown] : [])]
-  function combine(fields) {
-    field = fields[chosen.shown]
-    if (!gauge) return
-    const k = gauge.cell[1] * run.about.cells[0] + gauge.cell[0]
-    if (gauge.times.at(-1) === run.time) return
+  const watched = () => ({ field: chosen.shown, columns: run.about.cells[0], stride, probes: ['thickness', 'speed'], cell: gauge?.cell })
+  // Takes up what the gauge reads.
+  function note() {
+    if (!gauge || run.probed.length < 2 || gauge.times.at(-1) === run.time) return
     gauge.times.push(run.time)
-    gauge.thickness.push(fields.thickness[k])
-    gauge.speed.push(fields.speed[k])
+    gauge.thickness.push(run.probed[0])
+    gauge.speed.push(run.probed[1])
   }
 
-  function text() {
-    const title = given ? `An avalanche on ${given.name}` : MOUNTAINS[chosen.mountain].title
-    return caseOf({
-      title, dem: given?.name ?? 'mountain.asc', cell: chosen.cell, release: release?.name ?? 'release.geojson', thickness: chosen.thickness,
-      law: chosen.law, parameters: parameters[chosen.law], density: 200, scheme: chosen.scheme, end: chosen.end,
-      curvature: Math.max(20, 3 * (chosen.cell || given?.cell || 0)), // over a few cells
-    })
-  }
+  const builtIn = () => chosen.mountain !== 'given'
+  const text = () => caseOf({
+    title: builtIn() ? MOUNTAINS[chosen.mountain].title : `An avalanche on ${site.dem}`,
+    dem: site.dem, crs: site.crs, cell: chosen.cell, release: site.release?.name, thickness: chosen.thickness,
+    law: chosen.law, parameters: parameters[chosen.law], density: 200, scheme: chosen.scheme, end: chosen.end,
+    curvature: Math.max(20, 3 * (chosen.cell || site.cell)), // over a few cells
+  })
 
-  // Puts the built-in mountain and its release among the files.
-  async function builtIn() {
-    given = null
-    const made = files(chosen.mountain)
-    await client.call('put', 'mountain.asc', new TextEncoder().encode(made.dem))
-    await putRelease('release.geojson', new TextEncoder().encode(made.release))
-    const { values, ...where } = await client.call('raster', 'mountain.asc')
-    showGround(where, values)
-  }
-  async function putRelease(name, bytes) {
-    release = { name, rings: rings(name, bytes) }
-    await client.call('put', name, bytes)
-  }
-  function showGround(where, values) {
+  /** @param {import('./types').Ground} ground */
+  function showGround({ columns, rows, west, south, cell, stride: thinned, z }) {
     relief ??= new Relief(view)
-    relief.show({ ...where, z: values })
-    Object.assign(relief, { west: where.west, south: where.south })
+    stride = thinned
+    relief.show({ columns: Math.ceil(columns / stride), rows: Math.ceil(rows / stride), cell: cell * stride, z })
+    Object.assign(relief, { west, south })
   }
 
-  async function begin() {
+  async function close() {
     await player.stop()
-    complain(error)
     if (run) await client.call('close', run.handle)
     run = null
     gauge = null
-    field = null
+    series.hidden = true
+  }
+
+  async function begin() {
+    await close()
+    complain(error)
     try {
-      if (!relief || (!given && !relief.named?.startsWith(chosen.mountain))) {
-        await builtIn()
-        relief.named = chosen.mountain
+      if (builtIn() && site.mountain !== chosen.mountain) {
+        showGround(await site.builtIn(chosen.mountain))
+        site.mountain = chosen.mountain
       }
-      if (release) {
-        run = await client.call('open', text())
-        await showCells()
-        const state = await client.call('advance', run.handle, { steps: 0 }, names())
-        Object.assign(run, state)
-        combine(state.fields)
-      }
+      if (site.release) await open()
     } catch (reason) {
       run = null
       complain(error, reason)
     }
-    notes.replaceChildren(...(run?.about.remarks ?? []).map(remark => make('li', {}, remark)))
+    const memory = await client.call('memory')
+    notes.replaceChildren(
+      ...(run?.about.remarks ?? []).map(remark => make('li', {}, remark)),
+      make('li', {}, `Memory: ${run ? `${megabytes(run.about.bytes)} for this run of ${run.about.cells.join(' × ')} cells, ` : ''}${megabytes(memory)} of the engine in all; a browser gives 4096 MB at most.`))
     player.changed()
     draw()
   }
-
+  async function open() {
+    run = await client.call('open', text())
+    const { cells: [columns, rows], origin: [west, south], size: [cell] } = run.about
+    // The cells of the run, where the case resamples the elevation.
+    if (Math.ceil(columns / stride) !== relief.columns || cell * stride !== relief.cell) {
+      showGround({ columns, rows, west, south, cell, ...await client.call('ground', run.handle, { columns, rows }, PICTURE) })
+    }
+    Object.assign(run, await client.call('watch', run.handle, { steps: 0 }, watched()))
+  }
   const reset = serial(begin)
 
-  // Shows the cells of the run, where the case resamples the elevation.
-  async function showCells() {
-    const { cells: [columns, rows], origin: [west, south], size: [cell] } = run.about
-    if (columns === relief.columns && rows === relief.rows) return
-    showGround({ columns, rows, west, south, cell }, await client.call('field', run.handle, 'bed'))
-  }
-
-  // Where a coordinate lies, in cells.
-  const cellOf = ([x, y]) => [(x - relief.west) / relief.cell, (y - relief.south) / relief.cell]
+  // Coordinates of a point of the picture, and back.
+  const placeOf = ([i, j]) => [+(relief.west + i * relief.cell).toFixed(2), +(relief.south + j * relief.cell).toFixed(2)]
+  const pointOf = ([x, y]) => [(x - relief.west) / relief.cell, (y - relief.south) / relief.cell]
 
   function draw() {
     if (!relief) return
-    const [words, unit, scale] = SHOWN[chosen.shown]
-    const least = LEAST[chosen.shown]
+    const [words, unit, scale, least] = SHOWN[chosen.shown]
+    const field = run?.picture?.length === relief.columns * relief.rows ? run.picture : null
     const most = field ? field.reduce((most, value) => (value > most ? value : most), 5 * least) : 1
-    const fits = field && field.length === relief.columns * relief.rows
-    const lines = drawing ? [drawing.length > 1 ? [...drawing, drawing[0]] : drawing.concat(drawing)] : (release?.rings ?? []).map(ring => ring.map(cellOf))
-    relief.colour(fits ? field : null, { scale, most, least }, lines)
+    const rings = drawing ? [drawing.length === 1 ? [...drawing, ...drawing] : [...drawing, ...drawing.slice(0, 1)]] : site.release?.rings ?? []
+    relief.colour(field, { scale, most, least }, rings.map(ring => ring.map(pointOf)), gauge ? pointOf(gauge.at) : null)
     legend.style.setProperty('--scale', gradient(scale))
     legend.textContent = `${words}: 0 to ${fixed(most)} ${unit}`
-    said(words, most, unit)
-    if (gauge) {
-      const lines = [{ x: gauge.times, y: gauge.thickness, colour: '#d1495b' }, { x: gauge.times, y: gauge.speed, colour: '#0b6fb8' }]
-      chart(series, lines, { xLabel: 'time [s]', yLabel: 'thickness [m] (red), speed [m/s] (blue)' })
-      series.setAttribute('aria-label', `At column ${gauge.cell[0]}, row ${gauge.cell[1]}: thickness ${fixed(gauge.thickness.at(-1))} m after ${fixed(run?.time)} s`)
-    }
+    say(words, most, unit)
+    if (!gauge) return
+    const lines = [{ x: gauge.times, y: gauge.thickness, colour: '#d1495b' }, { x: gauge.times, y: gauge.speed, colour: '#2b86cc' }]
+    chart(series, lines, { xLabel: 'time [s]', yLabel: `at ${gauge.at.join(', ')}: thickness [m] (red), speed [m/s] (blue)` })
+    series.setAttribute('aria-label', `At ${gauge.at.join(', ')}: thickness ${fixed(gauge.thickness.at(-1))} m, speed ${fixed(gauge.speed.at(-1))} m/s after ${fixed(run?.time)} s`)
   }
-  function said(words, most, unit) {
+  function say(words, most, unit) {
+    clock.classList.remove('rest')
     if (!run) {
-      clock.textContent = release ? '' : 'Draw a release, or drop one as GeoJSON or a shapefile.'
+      clock.textContent = site.release || !error.hidden ? '' : 'Draw a release, or drop one as GeoJSON or a shapefile.'
       return
     }
     const rests = run.stop_reason === 'at_rest' || run.stop_reason === 'trickle'
+    const end = rests ? `It is ${run.in_words}: in every cell the momentum is exactly 0${run.stop_reason === 'trickle' ? ', but for a trickle' : ''}.` : `Ended: ${run.in_words}.`
     clock.textContent = `${fixed(run.time)} s, ${run.steps} steps; ${fixed(run.mass, 0)} m³, greatest speed now ${fixed(run.max_speed)} m/s, `
-      + `relative error of the mass ${(run.mass_error || 0).toExponential(1)}`
-      + (run.in_words ? `. ${rests ? `It is ${run.in_words}: in every cell the momentum is exactly 0${run.stop_reason === 'trickle' ? ', but for a trickle' : ''}.` : `Ended: ${run.in_words}.`}` : '.')
+      + `relative error of the mass ${(run.mass_error || 0).toExponential(1)}. ${run.in_words ? end : ''}`
     clock.classList.toggle('rest', rests)
-    relief.canvas.setAttribute('aria-label', `Relief of ${relief.columns} × ${relief.rows} cells with ${words.toLowerCase()} up to ${fixed(most)} ${unit}. ${clock.textContent}`)
+    relief.canvas.setAttribute('aria-label', `Relief of ${run.about.cells.join(' × ')} cells with ${words.toLowerCase()} up to ${fixed(most)} ${unit}. ${clock.textContent}`)
   }
 
-  // A press that does not turn the view chooses a place: of a gauge, or of a vertex while a release is drawn.
+  // A release is drawn by clicks on the relief, or its corners are written: x and y of each, a line each.
+  const corners = make('textarea', { rows: 4, 'aria-label': 'Corners of the release, x and y of one on each line', oninput: () => { drawing = written(corners.value); draw() } })
+  const done = button('Use this release', () => finish(), { class: 'main' })
+  const tools = make('div', { class: 'drawing', hidden: true },
+    make('label', {}, 'Click the corners on the relief, or write x and y of each on a line of its own:', corners),
+    make('div', { class: 'row' }, done, button('Cancel', cancel)))
+  const draws = button('Draw a release', start)
+  const written = words => words.split('\n').map(line => line.trim().split(/[\s,;]+/).map(Number)).filter(pair => pair.length === 2 && pair.every(Number.isFinite))
+  async function start() {
+    await player.stop()
+    drawing = []
+    corners.value = ''
+    tools.hidden = false
+    corners.focus({ preventScroll: true })
+    draw()
+  }
+  function cancel() {
+    drawing = null
+    tools.hidden = true
+    complain(error)
+    draws.focus()
+    draw()
+  }
+  const finish = serial(async () => {
+    if (drawing.length < 3) return complain(error, { message: `a release needs three corners or more, ${drawing.length} are set`, help: ['click more corners on the mountain'] })
+    const ring = drawing
+    drawing = null
+    tools.hidden = true
+    await site.drawn(ring)
+    await reset()
+  })
+  tools.addEventListener('keydown', event => { if (event.key === 'Escape') cancel() })
+
+  // A press that does not turn the view chooses a place: a corner while a release is drawn, else that of the gauge.
   function listen() {
     let pressed = null
     view.addEventListener('pointerdown', event => { pressed = [event.clientX, event.clientY] }, true)
     view.addEventListener('pointerup', event => {
       if (!pressed || Math.hypot(event.clientX - pressed[0], event.clientY - pressed[1]) > 4) return
-      const at = relief?.under(event)
-      if (!at) return
-      if (drawing) drawing.push(at)
-      else if (run) {
-        gauge = { cell: at.map(Math.floor), times: [], thickness: [], speed: [] }
-        client.call('advance', run.handle, { steps: 0 }, names()).then(state => { combine(state.fields); draw() })
-      }
-      draw()
+      const point = relief?.under(event)
+      if (point) choose(placeOf(point))
     }, true)
   }
-  async function toggleDrawing() {
+  const where = make('input', { size: 16, placeholder: 'x y', 'aria-label': 'Place of the time series, x and y', onchange: () => { for (const at of written(where.value)) choose(at) } })
+  function choose(at) {
     if (drawing) {
-      const ring = drawing
-      drawing = null
-      draws.textContent = 'Draw a release'
-      draws.setAttribute('aria-pressed', 'false')
-      if (ring.length < 3) return complain(error, { message: `a release needs at least three corners, ${ring.length} were set`, help: ['press Draw a release, click the corners on the mountain, press it again'] })
-      const corners = [...ring, ring[0]].map(([i, j]) => [+(relief.west + i * relief.cell).toFixed(2), +(relief.south + j * relief.cell).toFixed(2)])
-      await putRelease('release.geojson', new TextEncoder().encode(polygon(corners)))
-      return reset()
+      drawing.push(at)
+      corners.value += `${at.join(' ')}\n`
+    } else if (run) {
+      const { cells: [columns, rows], origin, size } = run.about
+      const [i, j] = [0, 1].map(k => Math.floor((at[k] - origin[k]) / size[k]))
+      if (i < 0 || j < 0 || i >= columns || j >= rows) return
+      where.value = at.join(' ')
+      gauge = { at, cell: j * columns + i, times: [], thickness: [], speed: [] }
+      series.hidden = false
+      look().catch(reason => complain(error, reason))
     }
-    await player.stop()
-    drawing = []
-    draws.textContent = 'Done: use this release'
-    draws.setAttribute('aria-pressed', 'true')
+    draw()
+  }
+  // Asks for what is shown now, where no step brings it.
+  async function look() {
+    if (!run || player.busy) return
+    Object.assign(run, await client.call('watch', run.handle, { steps: 0 }, watched()))
+    note()
     draw()
   }
 
   const take = serial(async list => {
+    if (!list.length) return
     try {
       complain(error)
       await player.stop()
-      const all = await read(list)
-      for (const [name, bytes] of all) await client.call('put', name, bytes)
-      const dem = all.find(([name]) => isElevation(name))
-      const outline = all.find(([name]) => isRelease(name))
-      if (!dem && !outline) throw { message: `${all.map(([name]) => name).join(', ')}: no elevation model and no release`, help: ['drop a GeoTIFF or an ESRI ASCII grid, and polygons as GeoJSON or a shapefile (a zip of .shp, .dbf and .prj)'] }
-      if (dem) {
-        const { values, ...where } = await client.call('raster', dem[0])
-        given = { name: dem[0], cell: where.cell }
-        release = null
-        if (run) await client.call('close', run.handle)
-        run = field = gauge = null
-        showGround(where, values)
+      const { ground, undo } = await site.take(list)
+      if (ground) {
+        await close()
+        chosen.mountain = site.mountain = 'given'
+        given()
+        showGround(ground)
       }
-      if (outline) release = { name: outline[0], rings: rings(...outline) }
       await begin()
+      if (run || !site.release || ground) return
+      // The release before it stays where the new one cannot be had.
+      const said = [...error.childNodes]
+      await undo()
+      await begin()
+      error.replaceChildren(...said)
+      error.hidden = false
     } catch (reason) {
       complain(error, reason)
     }
   })
+  // The choice of mountains names the given one.
+  function given() {
+    const option = mountains.select.querySelector('[value=given]') ?? mountains.select.appendChild(make('option', { value: 'given' }))
+    option.textContent = `yours: ${site.dem}`
+    mountains.select.value = 'given'
+  }
 
   function offerParameters() {
     parameters[chosen.law] ??= Object.fromEntries(LAWS[chosen.law].parameters.map(([key, , , , , , value]) => [key, value]))
@@ -230,70 +256,71 @@ export function mountain(client, place) {
       ...LAWS[chosen.law].parameters.map(([key, words, unit, least, most, step]) =>
         slider(words, unit, [least, most, step, parameters[chosen.law][key]], value => { parameters[chosen.law][key] = value; settle() })),
       slider('release thickness', 'm', [0.1, 5, 0.1, chosen.thickness], value => { chosen.thickness = value; settle() }),
-      slider('exaggeration', '×', [1, 3, 0.1, 1], value => relief?.exaggerate(value)))
+      slider('exaggeration', '×', [1, 3, 0.1, relief?.exaggeration ?? 1], value => relief?.exaggerate(value)))
   }
   // A slider that moved takes effect when it rests.
+  let settling = 0
   const settle = () => {
-    clearTimeout(settle.timer)
-    settle.timer = setTimeout(reset, 250)
+    clearTimeout(settling)
+    settling = setTimeout(reset, 250)
+  }
+  const sets = (key, of = value => value) => value => {
+    chosen[key] = of(value)
+    reset()
   }
 
-  const picker = make('input', { type: 'file', multiple: true, 'aria-label': 'Elevation model and release', onchange: () => take(picker.files) })
-  const drop = make('label', { class: 'drop' }, 'Your own mountain: drop a GeoTIFF or ASCII grid, and a release as GeoJSON or zipped shapefile, here or ', picker)
+  // Everything that the program needs to repeat the run, and the maps of it as they are.
+  async function archive() {
+    const files = [['case.toml', new TextEncoder().encode(text())], ...await site.files()]
+    for (const name of run ? Object.keys(SHOWN) : []) files.push([`${name}.tif`, await client.call('geotiff', run.handle, name)])
+    download('granflow.zip', await zip(files))
+  }
+  const saves = (words, work) => button(words, () => work()?.catch?.(reason => complain(error, reason)))
+
+  const picker = make('input', { type: 'file', multiple: true, 'aria-label': 'Elevation model and release', onchange: () => take([...picker.files]).then(() => { picker.value = '' }) })
+  const drop = make('label', { class: 'drop' }, 'Your own mountain: drop a GeoTIFF or ASCII grid, and a release as GeoJSON or zipped shapefile, anywhere on this tab, or ', picker)
   place.addEventListener('dragover', event => { event.preventDefault(); drop.classList.add('over') })
   place.addEventListener('dragleave', () => drop.classList.remove('over'))
   place.addEventListener('drop', event => {
     event.preventDefault()
     drop.classList.remove('over')
-    take(event.dataTransfer.files)
+    take([...event.dataTransfer.files])
   })
-  async function saveMap() {
-    if (run) download(`${chosen.shown}.tif`, await client.call('geotiff', run.handle, chosen.shown), 'image/tiff')
-  }
-  async function shownNow(value) {
-    chosen.shown = value
-    if (run && !player.busy) combine((await client.call('advance', run.handle, { steps: 0 }, names())).fields)
-    draw()
-  }
 
+  const mountains = choice('Mountain', titles(MOUNTAINS), chosen.mountain, value => {
+    if (value === 'given') return
+    mountains.select.querySelector('[value=given]')?.remove()
+    chosen.mountain = value
+    reset()
+  })
   place.append(
     make('div', { class: 'row' },
-      choice('Mountain', Object.fromEntries(Object.entries(MOUNTAINS).map(([key, { title }]) => [key, title])), chosen.mountain, value => {
-        chosen.mountain = value
-        given = null
-        if (relief) relief.named = ''
-        reset()
-      }),
-      choice('Friction', Object.fromEntries(Object.entries(LAWS).map(([key, { title }]) => [key, title])), chosen.law, value => {
+      mountains,
+      choice('Friction', titles(LAWS), chosen.law, value => {
         chosen.law = value
         offerParameters()
         reset()
       }),
-      choice('Scheme', { energy_stable_2: 'energy_stable_2', energy_stable: 'energy_stable (first order, faster)' }, chosen.scheme, value => {
-        chosen.scheme = value
-        reset()
-      }),
-      choice('Cells', { 0: 'as given', 10: '10 m', 20: '20 m' }, '0', value => {
-        chosen.cell = +value
-        reset()
-      })),
+      choice('Scheme', { energy_stable_2: 'energy_stable_2', energy_stable: 'energy_stable (first order, faster)' }, chosen.scheme, sets('scheme')),
+      choice('Cells', { 0: 'as given', 10: '10 m', 20: '20 m', 50: '50 m' }, '0', sets('cell', Number))),
     sliders,
     make('div', { class: 'row' }, play, step, button('Reset', reset), draws,
       choice('Speed', { 1: 'as it happens', 5: '5 times', 10: '10 times', 40: '40 times', Infinity: 'as fast as it goes' }, '10', value => { chosen.pace = +value }),
-      choice('Shown', Object.fromEntries(Object.entries(SHOWN).map(([key, [words]]) => [key, words])), chosen.shown, shownNow)),
-    error, view, legend, clock,
-    make('p', { class: 'hint' }, 'Drag to turn, scroll or pinch to come closer; click a place to see thickness and speed there over time.'),
+      choice('Shown', Object.fromEntries(Object.entries(SHOWN).map(([key, [words]]) => [key, words])), chosen.shown, value => {
+        chosen.shown = value
+        look().catch(reason => complain(error, reason))
+      })),
+    error, tools, view, legend, clock,
+    make('p', { class: 'hint' }, 'Drag to turn, scroll or pinch to come closer. Click a place, or write it here, to see thickness and speed there over time: ', where),
     series, notes, drop,
     make('div', { class: 'row' },
-      button('case.toml', () => download('case.toml', text())),
-      button('GeoTIFF of what is shown', () => saveMap().catch(reason => complain(error, reason))),
-      button('PNG of the view', () => relief?.canvas.toBlob(blob => download('mountain.png', blob))),
-      button('Files of the mountain', () => {
-        const made = files(chosen.mountain)
-        download('mountain.asc', made.dem)
-        download('release.geojson', made.release)
-      })))
+      saves('case.toml', () => download('case.toml', text())),
+      saves('All as a zip: case, files, maps', archive),
+      saves('GeoTIFF of what is shown', async () => run && download(`${chosen.shown}.tif`, await client.call('geotiff', run.handle, chosen.shown), 'image/tiff')),
+      saves('PNG of the view', () => relief?.canvas.toBlob(blob => download('mountain.png', blob)))))
   listen()
   offerParameters()
-  return { reset, player, take, idle: () => reset.waiting + take.waiting === 0, redraw: draw, open: () => relief || reset(), run: () => run, relief: () => relief, text }
+  return { reset, player, take, idle: () => reset.waiting + take.waiting + finish.waiting === 0, redraw: draw, open: () => relief || reset(), run: () => run, site: () => site, relief: () => relief, text }
 }
+
+const megabytes = bytes => `${fixed(bytes / 1e6, 1)} MB`

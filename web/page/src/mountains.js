@@ -11,6 +11,7 @@ const rise = (x, width) => 0.5 + 0.5 * x / sqrt(x * x + width * width)
 const fall = (s, grade, end, width) => grade * 0.5 * (end - s + sqrt((end - s) * (end - s) + width * width))
 
 export const MOUNTAINS = {
+  demo: { title: 'The mountain of granflow demo', demo: true, crs: 'EPSG:31287' }, // its formula is the program's
   gully: {
     title: 'A bowl, a gully and a fan',
     columns: 200, rows: 300,
@@ -61,12 +62,11 @@ export function files(name) {
     const s = (row + 0.5) * CELL
     lines.push(Array.from({ length: columns }, (_, k) => height((k + 0.5) * CELL - middle, s).toFixed(2)).join(' '))
   }
-  const ring = [...release, release[0]].map(([x, s]) => [middle + x, s])
-  return { dem: lines.join('\n') + '\n', release: polygon(ring) }
+  return { dem: lines.join('\n') + '\n', release: polygons([release.map(([x, s]) => [middle + x, s])]) }
 }
 
-// A closed ring as a GeoJSON file.
-export const polygon = ring => JSON.stringify({
+// Rings as a GeoJSON file, a polygon each.
+export const polygons = rings => JSON.stringify({
   type: 'FeatureCollection',
-  features: [{ type: 'Feature', properties: {}, geometry: { type: 'Polygon', coordinates: [ring] } }],
+  features: rings.map(ring => ({ type: 'Feature', properties: {}, geometry: { type: 'Polygon', coordinates: [[...ring, ring[0]]] } })),
 })

@@ -9,6 +9,7 @@ import sine from '../../../cases/sine.toml'
 import { chart } from './chart.js'
 import { button, choice, complain, fixed, make } from './dom.js'
 import { Player, serial } from './player.js'
+import { LANGUAGES, TEXTS } from './texts.js'
 
 const FLOW = {
   energy_stable: 'energy_stable', balanced: 'balanced', verfahren_5: 'Verfahren 5', verfahren_4: 'Verfahren 4',
@@ -16,14 +17,17 @@ const FLOW = {
 }
 const PILES = { adaptive: 'adaptive', first_order: 'first order', second_order: 'second order' }
 
+// Titles stand in texts.js by the same keys.
 const EXAMPLES = {
-  silo: { text: silo, title: 'A silo breaks (Kaland & Struckmeier 2007, Fig. 2)', german: 'Ein Silo zerbricht' },
-  inclined: { text: inclined, title: 'A silo breaks on a slope (Fig. 4)', german: 'Ein Silo zerbricht am Hang' },
-  parabola: { text: parabola, title: 'A parabolic heap spreads (Fig. 5)', german: 'Ein Parabelhaufen breitet sich aus' },
-  riemann: { text: riemann, title: 'Riemann problem without friction (Fig. 1)', german: 'Riemannproblem ohne Reibung', exact: [0.4, 1, 0.5] },
-  sine: { text: sine, title: 'A heap splits in two on a steep slope (Fig. 6); Verfahren 2 to 4 fail', german: 'Ein Haufen teilt sich am steilen Hang' },
-  constant: { text: constant, title: 'A constant layer stays (thesis, Abb. 5.1)', german: 'Eine konstante Schicht bleibt liegen' },
-  roof: { text: roof, title: 'A sandpile between two edges (Aggarwal et al. 2023)', german: 'Ein Sandhaufen zwischen zwei Kanten', pile: true },
+  silo: { text: silo }, inclined: { text: inclined }, parabola: { text: parabola }, riemann: { text: riemann, exact: [0.4, 1, 0.5] },
+  sine: { text: sine }, constant: { text: constant }, roof: { text: roof, pile: true },
+}
+
+// What can be followed over time.
+const FOLLOWED = {
+  variation: run => variation(Array.from(run.values[0])),
+  mass: run => run.mass,
+  speed: run => run.max_speed ?? NaN,
 }
 
 const fields = example => (example.pile ? ['standing_layer', 'rolling_layer'] : ['thickness', 'velocity_x'])
@@ -36,13 +40,15 @@ const variation = values => values.reduce((sum, value, k) => (k ? sum + Math.abs
 
 export function papers(client, place) {
   const colours = ['#0b6fb8', '#d1495b', '#2f8f4e']
-  const chosen = { example: 'silo', schemes: ['verfahren_5', 'energy_stable', ''] }
+  const chosen = { example: 'silo', schemes: ['verfahren_5', 'energy_stable', ''], followed: 'variation', language: navigator.language.startsWith('de') ? 'de' : 'en' }
+  const said = key => TEXTS[chosen.language][key]
   let runs = []
   const error = make('div', { class: 'error', role: 'alert', hidden: true })
   const upper = make('canvas', { class: 'chart', role: 'img' })
   const lower = make('canvas', { class: 'chart', role: 'img' })
+  const followed = make('canvas', { class: 'chart', role: 'img' })
   const table = make('table', {})
-  const clock = make('p', { class: 'clock', 'aria-live': 'polite' })
+  const clock = make('p', { class: 'clock', 'aria-live': 'off' })
   const schemes = make('div', { class: 'row' })
   const controls = make('div', { class: 'row' })
 
@@ -60,24 +66,32 @@ export function papers(client, place) {
     },
     show,
     changed: () => {
-      play.textContent = player.playing ? 'Pause' : 'Run'
+      play.textContent = said(player.playing ? 'pause' : 'run')
       play.disabled = player.ended || !runs.length
       step.disabled = play.disabled || player.playing
     },
     failed: reason => complain(error, reason),
   })
-  const play = button('Run', () => (player.playing ? player.pause() : player.play()), { class: 'main' })
-  const step = button('One step', () => player.step())
+  const play = button(said('run'), () => (player.playing ? player.pause() : player.play()), { class: 'main' })
+  const step = button(said('step'), () => player.step())
 
   // Steps one run; one that fails stays as it was and says why.
   async function advanced(run, limits) {
     try {
       const { fields: kept, ...state } = await client.call('advance', run.handle, limits, run.names)
       Object.assign(run, state, { values: run.names.map(name => kept[name]) })
+      note(run)
     } catch (reason) {
       run.failed = reason.message
       run.ended = true
     }
+  }
+
+  // What is followed over time; every second entry goes when there are many.
+  function note(run) {
+    if (run.history.at(-1)?.time === run.time) run.history.pop()
+    run.history.push({ time: run.time, ...Object.fromEntries(Object.entries(FOLLOWED).map(([key, of]) => [key, of(run)])) })
+    if (run.history.length > 600) run.history = run.history.filter((_, k) => k % 2 === 0)
   }
 
   const reset = serial(async () => {
@@ -91,7 +105,7 @@ export function papers(client, place) {
         if (!scheme || chosen.schemes.indexOf(scheme) < k) continue
         const overrides = [`scheme.name=${scheme}`]
         const { handle, about } = await client.call('open', example.text, overrides)
-        const run = { handle, about, scheme, colour: colours[k], names: fields(example), time: 0 }
+        const run = { handle, about, scheme, colour: colours[k], names: fields(example), time: 0, history: [] }
         run.x = Array.from({ length: about.cells[0] }, (_, i) => about.origin[0] + (i + 0.5) * about.size[0])
         run.nodes = Array.from({ length: about.cells[0] + 1 }, (_, i) => about.origin[0] + i * about.size[0])
         await advanced(run, { steps: 0 })
@@ -108,6 +122,7 @@ export function papers(client, place) {
 
   // The exact solution at the time of the first run.
   let solution
+  let asking = false
   async function exact() {
     const example = EXAMPLES[chosen.example]
     solution = null
@@ -124,9 +139,9 @@ export function papers(client, place) {
   function show() {
     if (!runs.length) return
     const example = EXAMPLES[chosen.example]
-    if (example.exact && !show.waiting) {
-      show.waiting = true
-      exact().catch(() => {}).finally(() => { show.waiting = false; draw() })
+    if (example.exact && !asking) {
+      asking = true
+      exact().catch(() => {}).finally(() => { asking = false; draw() })
     }
     draw()
   }
@@ -136,47 +151,70 @@ export function papers(client, place) {
     const example = EXAMPLES[chosen.example]
     const x = (run, k) => (run.values[k].length > run.x.length ? run.nodes : run.x)
     for (const [k, canvas] of [upper, lower].entries()) {
+      /** @type {Parameters<typeof chart>[1]} */
       const lines = runs.filter(run => run.values).map(run => ({ x: x(run, k), y: run.values[k], colour: run.colour }))
       if (solution?.[k] && runs[0]) lines.unshift({ x: x(runs[0], k), y: solution[k], dashed: true, width: 1.5 })
-      const words = runs[0].about.quantities.find(({ name }) => name === runs[0].names[k])?.long_name ?? runs[0].names[k]
+      const words = said(runs[0].names[k])
       chart(canvas, lines, { yLabel: words, xLabel: k ? 'x' : '' })
-      canvas.setAttribute('aria-label', `${words} over x at time ${fixed(runs[0].time)}, ${runs.map(run => run.scheme).join(' and ')}`)
+      canvas.setAttribute('aria-label', `${words} (x), ${said('time')} ${fixed(runs[0].time)}: ${runs.map(run => run.scheme).join(', ')}`)
     }
-    clock.textContent = `time ${fixed(Math.min(...runs.map(run => run.time)), 3)}`
-      + (solution ? '; dashed: exact solution' : '') + (example.german ? ` · „${example.german}“` : '')
+    const lines = runs.map(({ history, colour }) => ({ x: history.map(({ time }) => time), y: history.map(entry => entry[chosen.followed]), colour }))
+    chart(followed, lines, { xLabel: said('time'), yLabel: said(chosen.followed) })
+    followed.setAttribute('aria-label', `${said(chosen.followed)}, ${said('over')}: ${runs.map(run => `${run.scheme} ${fixed(run.history.at(-1)?.[chosen.followed], 4)}`).join(', ')}`)
+    clock.textContent = `${said('time')} ${fixed(Math.min(...runs.map(run => run.time)), 3)}${solution ? `; ${said('exact')}` : ''}`
     table.replaceChildren(
-      make('thead', {}, row('th', ['scheme', 'time', 'steps', 'mass', 'gained or lost', 'total variation', 'greatest speed', 'state'])),
+      make('thead', {}, row('th', said('columns'))),
       make('tbody', {}, ...runs.map(run => row('td', numbers(run), run.colour))))
   }
 
-  const row = (tag, cells, colour) => make('tr', {}, ...cells.map((cell, k) => make(tag, k || !colour ? {} : { style: `color: ${colour}` }, cell)))
+  const row = (tag, cells, colour) => make('tr', {}, ...cells.map((cell, k) => make(tag, {}, !k && colour ? make('span', { class: 'swatch', style: `background: ${colour}` }) : '', cell)))
   function numbers(run) {
     const lost = (run.mass - run.first.mass - run.mass_in + run.mass_out) / (run.first.mass || run.mass_in || 1)
     const least = run.values[0].reduce((least, value) => Math.min(least, value), Infinity)
-    const state = run.failed ? `failed: ${run.failed}` : run.in_words ?? (least < 0 ? `negative: ${least.toExponential(1)}` : 'runs')
+    const ended = run.in_words && (said(run.stop_reason === 'steps' ? 'all_steps' : run.stop_reason) ?? run.in_words)
+    const state = run.failed ? `${said('failed')}: ${run.failed}`
+      : [ended ?? said('runs'), least < 0 ? `${said('negative')} ${least.toExponential(1)}` : ''].filter(Boolean).join('; ')
     return [
       run.scheme, fixed(run.time, 3), String(run.steps), fixed(run.mass, 5), `${(100 * lost).toPrecision(3)} %`,
       fixed(variation(Array.from(run.values[0])), 3), run.max_speed == null ? '–' : run.max_speed.toPrecision(3), state,
     ]
   }
 
+  const scheme = (names, k) => choice(`${said('scheme')} ${k + 1}`, { ...(k ? { '': said('none') } : {}), ...names }, chosen.schemes[k], value => {
+    chosen.schemes[k] = value
+    reset()
+  })
+  const over = make('div', { class: 'row' })
+  // Everything that one chooses or presses, in the language that is chosen.
   function offered() {
     const names = EXAMPLES[chosen.example].pile ? PILES : FLOW
     if (!chosen.schemes.some(scheme => scheme in names)) chosen.schemes = Object.keys(names).slice(0, 2).concat('')
-    schemes.replaceChildren(...[0, 1, 2].map(k => choice(`Scheme ${k + 1}`, { ...(k ? { '': 'none' } : {}), ...names }, chosen.schemes[k], value => {
-      chosen.schemes[k] = value
-      reset()
-    })))
+    place.lang = chosen.language
+    step.textContent = said('step')
+    controls.replaceChildren(
+      choice(said('example'), Object.fromEntries(Object.keys(EXAMPLES).map(key => [key, said(key)])), chosen.example, value => {
+        chosen.example = value
+        offered()
+        reset()
+      }),
+      play, step, button(said('reset'), reset),
+      choice(said('language'), LANGUAGES, chosen.language, value => {
+        chosen.language = value
+        offered()
+        draw()
+        controls.querySelector('label:last-child select').focus()
+      }))
+    schemes.replaceChildren(...[0, 1, 2].map(k => scheme(names, k)))
+    over.replaceChildren(choice(said('over'), Object.fromEntries(Object.keys(FOLLOWED).map(key => [key, said(key)])), chosen.followed, value => {
+      chosen.followed = value
+      draw()
+    }))
+    wide.setAttribute('aria-label', said('region'))
+    player.changed()
   }
 
-  controls.append(
-    choice('Example', Object.fromEntries(Object.entries(EXAMPLES).map(([key, { title }]) => [key, title])), chosen.example, value => {
-      chosen.example = value
-      offered()
-      reset()
-    }),
-    play, step, button('Reset', reset))
-  place.append(controls, schemes, error, upper, lower, clock, make('div', { class: 'wide' }, table))
+  const wide = make('div', { class: 'wide', tabindex: 0, role: 'region' }, table)
+  place.append(controls, schemes, error, upper, lower, clock, wide, over, followed)
   offered()
   return { reset, player, idle: () => reset.waiting === 0, redraw: draw, open: () => runs.length || reset(), runs: () => runs }
 }

@@ -18,6 +18,20 @@ export function serial(work) {
 }
 
 export class Player {
+  /** @type {(limits: import('./types').Limits) => Promise<boolean>} */
+  ask
+  /** @type {() => void} */
+  show
+  /** @type {() => void} */
+  changed
+  /** @type {(reason: import('./types').Reason) => void} */
+  failed
+  /** @type {() => number} */
+  pace
+  /** @type {() => number} */
+  time
+  busy = false
+
   // `ask(limits)` steps and resolves to true at the end; `show()` draws, at most once a frame; `pace()` says how much of the
   // run's time may pass in a second, of which `time()` is the present one.
   constructor({ ask, show, changed, failed, pace = () => Infinity, time = () => 0 }) {

@@ -1,14 +1,32 @@
 // A mountain in three dimensions: the relief with a picture of the field laid over it, turned and zoomed by the pointer.
 import {
   BufferAttribute, BufferGeometry, ClampToEdgeWrapping, DataTexture, LinearFilter, Mesh, MeshBasicMaterial,
-  PerspectiveCamera, Raycaster, RGBAFormat, Scene, SRGBColorSpace, Vector2, WebGLRenderer,
+  PerspectiveCamera, Raycaster, RGBAFormat, Scene, SRGBColorSpace, Vector2, Vector3, WebGLRenderer,
 } from 'three'
 import { OrbitControls } from 'three/addons/controls/OrbitControls.js'
-import { hillshade, paint } from './colours.js'
+import { hillshade, paint, shaded } from './colours.js'
 
-const FINEST = 160 // nodes of the relief along an axis: the picture over it has every cell
+const FINEST = 160 // nodes of the relief along an axis: the picture over it is finer
+// Rows and columns of the picture at most; each of its points stands for a block of cells where there are more.
+export const PICTURE = 700
 
 export class Relief {
+  columns = 1
+  rows = 1
+  cell = 1
+  west = 0
+  south = 0
+  low = 0
+  drop = 0
+  z = new Float64Array(1)
+  shade = new Float32Array(1)
+  ground = new Uint8Array(4)
+  bytes = new Uint8Array(4)
+  /** @type {DataTexture} */
+  texture = null
+  /** @type {Mesh<BufferGeometry, MeshBasicMaterial>} */
+  mesh = null
+
   constructor(place) {
     this.renderer = new WebGLRenderer({ antialias: false, alpha: true, preserveDrawingBuffer: true })
     this.renderer.outputColorSpace = SRGBColorSpace
@@ -52,7 +70,7 @@ export class Relief {
     this.drawn++
   }
 
-  // A mountain of `columns` x `rows` cells, elevations `z` in rows from the south.
+  // A mountain of `columns` x `rows` points, elevations `z` in rows from the south; none where there is no elevation.
   show({ columns, rows, cell, z }) {
     Object.assign(this, { columns, rows, cell, z })
     let [low, high] = [Infinity, -Infinity]
@@ -60,8 +78,9 @@ export class Relief {
       if (value < low) low = value
       if (value > high) high = value
     }
-    this.low = low
+    Object.assign(this, { low, drop: high - low })
     this.shade = hillshade(z, columns, rows, cell)
+    this.ground = shaded(this.shade)
     this.bytes = new Uint8Array(4 * columns * rows)
     this.texture?.dispose()
     this.texture = new DataTexture(this.bytes, columns, rows, RGBAFormat)
@@ -71,14 +90,24 @@ export class Relief {
     })
     this.build()
     this.colour(null, { scale: 'heat', most: 1, least: Infinity })
-    this.lookFrom(high - low)
+    this.look()
   }
 
-  lookFrom(drop) {
-    const [width, length] = [this.columns * this.cell, this.rows * this.cell]
-    const far = 1.05 * Math.max(width, length)
-    this.controls.target.set(0, 0.35 * drop * this.exaggeration, 0.05 * length)
-    this.camera.position.set(0.45 * far, 0.75 * far + 0.4 * drop, -1.0 * far)
+  // Looks at the whole of it from the north-east and above, from as near as its corners allow.
+  look() {
+    const half = [this.columns * this.cell / 2, this.drop * this.exaggeration / 2, this.rows * this.cell / 2]
+    const back = new Vector3(0.45, 0.8, -1).normalize()
+    const right = new Vector3(0, 1, 0).cross(back).normalize()
+    const up = back.clone().cross(right)
+    const high = Math.tan(this.camera.fov * Math.PI / 360)
+    let far = 0
+    for (let k = 0; k < 8; k++) {
+      const corner = new Vector3(...half.map((size, n) => (k >> n & 1 ? size : -size)))
+      const across = Math.max(Math.abs(corner.dot(up)) / high, Math.abs(corner.dot(right)) / (high * this.camera.aspect))
+      far = Math.max(far, corner.dot(back) + 1.04 * across)
+    }
+    this.controls.target.set(0, half[1], 0)
+    this.camera.position.copy(back.multiplyScalar(far)).add(this.controls.target)
     Object.assign(this.camera, { near: 0.01 * far, far: 20 * far })
     this.camera.updateProjectionMatrix()
     this.stale = true
@@ -100,10 +129,11 @@ export class Relief {
       }
     }
     const faces = []
+    const known = Array.from({ length: nx * ny }, (_, n) => Number.isFinite(z[at(Math.floor(n / nx), ny, rows) * columns + at(n % nx, nx, columns)]))
     for (let j = 0; j + 1 < ny; j++) {
       for (let i = 0; i + 1 < nx; i++) {
         const n = j * nx + i
-        faces.push(n, n + 1, n + nx + 1, n, n + nx + 1, n + nx)
+        for (const face of [[n, n + 1, n + nx + 1], [n, n + nx + 1, n + nx]]) if (face.every(node => known[node])) faces.push(...face)
       }
     }
     const geometry = new BufferGeometry()
@@ -115,7 +145,7 @@ export class Relief {
       this.mesh.geometry.dispose()
       this.mesh.material.dispose()
     }
-    this.mesh = new Mesh(geometry, new MeshBasicMaterial({ map: this.texture }))
+    this.mesh = new Mesh(geometry, new MeshBasicMaterial({ map: this.texture, alphaTest: 0.5 }))
     this.scene.add(this.mesh)
     this.stale = true
   }
@@ -123,12 +153,17 @@ export class Relief {
   exaggerate(factor) {
     this.exaggeration = factor
     this.build()
+    this.look()
   }
 
-  // Lays a field over the relief, with lines over it: each a list of [column, row].
-  colour(field, how, lines = []) {
-    paint(this.bytes, this.shade, field, how)
+  // Lays a field over the relief, with lines over it, each a list of [column, row], and a place that is marked by a cross.
+  colour(field, how, lines = [], mark = null) {
+    paint(this.bytes, this.ground, this.shade, field, how)
     for (const points of lines) this.trace(points)
+    if (mark) {
+      const arm = Math.max(this.columns, this.rows) / 80
+      for (const [dx, dy] of [[arm, 0], [0, arm]]) this.trace([[mark[0] - dx, mark[1] - dy], [mark[0] + dx, mark[1] + dy]])
+    }
     this.texture.needsUpdate = true
     this.stale = true
   }

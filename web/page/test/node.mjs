@@ -1,13 +1,14 @@
 // The engine in node against the program: every field and map of every case to the bit, and the time that both take.
-//   node test/node.mjs ENGINE.wasm PROGRAM, which prints checksums of a case file (the example `checksums` of granflow)
+//   node test/node.mjs ENGINE.wasm PROGRAM GRANFLOW: the example `checksums` of granflow, which prints those of a case file, and the program
 import { execFileSync } from 'node:child_process'
 import { mkdtempSync, readFileSync, rmSync, writeFileSync } from 'node:fs'
 import { tmpdir } from 'node:os'
 import { join } from 'node:path'
 import { Engine, Refused } from '../src/engine.js'
+import { files } from '../src/mountains.js'
 import { CASES } from './cases.mjs'
 
-const [wasm, program] = process.argv.slice(2)
+const [wasm, program, granflow] = process.argv.slice(2)
 const bytes = readFileSync(wasm)
 let failed = 0
 const check = (holds, words) => {
@@ -31,10 +32,10 @@ function native(text, files) {
 }
 
 const engine = await Engine.of(bytes)
-for (const [name, text, files] of CASES) {
-  for (const [file, content] of Object.entries(files)) engine.put(file, new TextEncoder().encode(content))
+for (const [name, text, needed] of CASES) {
+  for (const [file, content] of Object.entries(needed)) engine.put(file, new TextEncoder().encode(content))
   const { summary, checksums } = engine.run(text)
-  const expected = native(text, files)
+  const expected = native(text, needed)
   const differ = Object.keys(checksums).filter(field => checksums[field] !== expected[field])
   const same = differ.length === 0 && Object.keys(checksums).length > 1 && String(summary.steps) === expected.steps
   check(same, `${name}: ${summary.in_words} after ${summary.steps} steps, ${Object.keys(checksums).length} checksums`
@@ -62,5 +63,21 @@ check(engine.advance(handle, { steps: 1 }).steps === 1, 'one step is one step')
 const saved = engine.field(handle, 'thickness')
 check(saved.length === 240 && saved.every(Number.isFinite), 'a field has a number for each cell')
 engine.close(handle)
+
+// The mountain of the program's demo, to the byte.
+const folder = mkdtempSync(join(tmpdir(), 'granflow-'))
+execFileSync(granflow, ['new', 'avalanche', join(folder, 'case.toml')], { stdio: 'ignore' })
+engine.demo()
+for (const name of ['mountain.asc', 'release.geojson']) check(Buffer.compare(readFileSync(join(folder, name)), engine.get(name)) === 0, `${name} is that of the program`)
+rmSync(folder, { recursive: true })
+
+// Every code has its definition, and what is none has none.
+const { dem: plain, release: anywhere } = files('plane')
+engine.put('mountain.asc', new TextEncoder().encode(plain))
+engine.put('release.geojson', new TextEncoder().encode(anywhere))
+const inSystem = crs => slide.replace('dem = "mountain.asc"', `dem = "mountain.asc"\ncrs = "${crs}"`)
+engine.close(engine.open(inSystem('EPSG:32632')).handle)
+refused(inSystem('EPSG:4326'), /degrees|metres/, 'a system in degrees')
+refused(inSystem('EPSG:2264'), /foot|feet|metres|unit/, 'a system in feet')
 
 process.exitCode = failed ? 1 : 0
