@@ -87,13 +87,21 @@ def expected(path):
         return values, file.transform.c, south, file.transform.a
 
 
+def near(path):
+    """A system in metres that is true at the place of a variant, as a user would choose it: those in feet are in North Carolina."""
+    if path.suffix not in (".tif", ".asc"):
+        return "EPSG:25832"
+    with rasterio.open(path) as file:
+        return "EPSG:32617" if file.transform.c == 1000000 else "EPSG:25832"
+
+
 def cure(answer, path, after):
     """Runs the command that a refusal offers and reads what it writes; what came of it, in words."""
     commands = re.findall(r"^  ((?:gdal|ogr)\S+ .*)$", answer["refused"], re.M)
     if not commands:
         return "refused, a step by hand"
     for command in commands:
-        command = command.replace("EPSG:xxxx", "EPSG:25832").replace("THIS_FILE", str(path))
+        command = command.replace("EPSG:xxxx", near(path)).replace("THIS_FILE", str(path))
         words = command.split()
         if shutil.which(words[0]) is None:
             return f"refused, {words[0]} is not here"
@@ -227,9 +235,9 @@ def rasters():
     raster("grid, heights by the key", asc(grid), wanted=lambda: south_first() * 1200 / 3937, crs=["EPSG:26910+6360"])
     raster("state plane in feet", lambda p: tiff(p, crs="EPSG:2264", transform=from_origin(1000000, 800000, 15, 15)), refused="gdalwarp -s_srs EPSG:2264")
     raster("grid in feet by the key", asc(lambda p: grid(p, xllcorner=1000000, yllcorner=800000)), crs=["EPSG:2264"], refused="gdalwarp -s_srs EPSG:2264")
-    raster("web map", lambda p: tiff(p, crs="EPSG:3857", transform=from_origin(1250000, 6000000, 5, 5)), refused="1/cos(latitude)")
+    raster("web map", lambda p: tiff(p, crs="EPSG:3857", transform=from_origin(1250000, 6000000, 5, 5)), refused="too long eastward")
     raster("degrees", lambda p: tiff(p, crs="EPSG:4326", transform=from_origin(11, 47, 1e-4, 1e-4)), refused="in degrees")
-    raster("system by parameters", lambda p: tiff(p, crs="+proj=lcc +lat_1=46 +lat_2=49 +lat_0=47.5 +lon_0=13.333 +x_0=400000 +y_0=400000 +ellps=bessel +units=m"))
+    raster("system by parameters", lambda p: tiff(p, crs="+proj=lcc +lat_1=46 +lat_2=49 +lat_0=47.5 +lon_0=13.333 +x_0=400000 +y_0=400000 +ellps=bessel +units=m", transform=from_origin(500000, 480000, 5, 5)))
     raster("world file", world, refused="gdal_translate -a_srs")
     raster("nodata -32768 undeclared", lambda p: tiff(p, holes(-32768)), refused="gdal_edit.py -a_nodata -32768")
     raster("another system than the key", tiff, crs=["EPSG:31287"], refused="gdalwarp -t_srs EPSG:31287")

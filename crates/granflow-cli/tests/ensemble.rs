@@ -100,6 +100,14 @@ fn parts_of_any_order_are_the_whole() {
         let [whole, merged] = ["whole", "merged"].map(|out| fs::read(at(out).join(name)).unwrap());
         assert!(whole == merged, "{name}");
     }
+    // A part that is not as it was left is named, and computed again.
+    let sound = fs::read(at(&one)).unwrap();
+    for damaged in [&sound[..sound.len() / 2], &fs::read(at(&two)).unwrap(), b""] {
+        fs::write(at(&one), damaged).unwrap();
+        let output = granflow(folder.path(), &["ensemble", "slab.toml", "--part", "1/5"]);
+        assert!(output.status.success() && fs::read(at(&one)).unwrap() == sound, "{}", told(&output));
+        assert!(told(&output).contains("part-1-of-5.bin") && told(&output).contains("again"), "{}", told(&output));
+    }
     let told_of = |parts: &[&str]| {
         let output = merge(parts, "no");
         assert_eq!(output.status.code(), Some(2), "{}", told(&output));

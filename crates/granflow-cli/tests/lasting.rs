@@ -48,6 +48,23 @@ time = { end = 4.0 }
 output = { every = 0.05, files = ["netcdf"] }
 "#;
 
+/// All that acts between the steps and all that looks at them, on the mountain that the program brings along.
+const MOUNTAIN: &str = r#"
+terrain = { dem = "mountain.asc", crs = "EPSG:31287", cell = 10.0 }
+material = { density = 300.0, friction.coulomb.mu = 0.3, forest = 0.02, forest_breaks_at = 40.0 }
+release = [
+    { polygons = "release.geojson", thickness = 1.0 },
+    { cap = { height = 2.0, centre = [250540.0, 350300.0], radius = 30.0 }, at = 6.3 },
+]
+inflow = [{ line = [[250480.0, 350250.0], [250600.0, 350250.0]], hydrograph = "q.csv" }]
+entrainment = { layer = 0.3, law.speed = { coefficient = 0.002 }, lower_bed = true }
+gauge = [{ name = "gully", at = [250540.0, 350500.0] }]
+section = [{ name = "weir", line = [[250200.0, 350600.0], [250800.0, 350600.0]] }]
+time = { until = "rest", end = 40.0 }
+output = { every = 0.7, files = ["netcdf"], durations = { thickness = 0.1, speed = 5.0 } }
+"#;
+const HYDROGRAPH: &str = "time, discharge, speed\n2, 0, 3\n5.5, 40, 3\n17, 0, 1\n";
+
 /// All models, orders and ways of stepping.
 const RUNS: &[Long] = &[
     Long { name: "chute", text: CHUTE, sets: &[] },
@@ -73,6 +90,21 @@ const RUNS: &[Long] = &[
         text: "",
         sets: &["terrain.cell=3", "output.every=0.5", "scheme.name=\"energy_stable_2\""],
     },
+    Long {
+        name: "mountain, all between the steps",
+        text: MOUNTAIN,
+        sets: &["scheme.name=\"energy_stable\"", "terrain.cell=7"],
+    },
+    Long {
+        name: "mountain, all between the steps, second order",
+        text: MOUNTAIN,
+        sets: &["entrainment.law=\"plough\"", "terrain.cell=8"],
+    },
+    Long {
+        name: "mountain, active and passive",
+        text: MOUNTAIN,
+        sets: &["material.earth_pressure={active_passive={internal=\"35 deg\"}}"],
+    },
     Long { name: "pile", text: PILE, sets: &[] },
     Long { name: "pile, first order", text: PILE, sets: &["scheme.name=\"first_order\""] },
     Long { name: "pile, second order", text: PILE, sets: &["scheme.name=\"second_order\""] },
@@ -82,9 +114,9 @@ const RUNS: &[Long] = &[
 impl Long {
     /// Writes the case into a folder; one without a text is the mountain that the program brings along.
     fn write(&self, folder: &Path) {
-        if self.text.is_empty() {
-            assert!(granflow(folder, &["new", "avalanche", "case.toml"]).status.success());
-        } else {
+        assert!(granflow(folder, &["new", "avalanche", "case.toml"]).status.success());
+        fs::write(folder.join("q.csv"), HYDROGRAPH).unwrap();
+        if !self.text.is_empty() {
             fs::write(folder.join("case.toml"), self.text).unwrap();
         }
     }

@@ -20,16 +20,17 @@ pub struct Reader {
 impl Reader {
     /// It reads a file, which takes a hundred times as long as bytes in memory.
     pub fn on_disk(&self) -> bool {
-        ["checkpoint", "frames", "ledger", "summary", "result"].contains(&self.name)
+        ["checkpoint", "frames", "ledger", "summary", "result", "compared"].contains(&self.name)
     }
 }
 
 /// All readers.
-pub const READERS: [Reader; 14] = [
+pub const READERS: [Reader; 18] = [
     Reader { name: "formula", seeds: formulas, read: formula },
     Reader { name: "case", seeds: cases, read: case },
     Reader { name: "npy", seeds: arrays, read: |bytes| with_thickness("h.npy", bytes) },
     Reader { name: "csv", seeds: tables, read: |bytes| with_thickness("h.csv", bytes) },
+    Reader { name: "hydrograph", seeds: hydrographs, read: hydrograph },
     Reader { name: "asc", seeds: grids, read: raster },
     Reader { name: "tif", seeds: images, read: raster },
     Reader { name: "geojson", seeds: geojson, read: |bytes| layer(bytes, None) },
@@ -38,8 +39,11 @@ pub const READERS: [Reader; 14] = [
     Reader { name: "checkpoint", seeds: results::checkpoints, read: results::checkpoint },
     Reader { name: "frames", seeds: results::frames, read: results::stored },
     Reader { name: "ledger", seeds: results::ledgers, read: results::ledger },
+    Reader { name: "series", seeds: results::series, read: results::table },
     Reader { name: "summary", seeds: results::summaries, read: results::summary },
     Reader { name: "result", seeds: results::results, read: results::result },
+    Reader { name: "part", seeds: results::parts, read: results::part },
+    Reader { name: "compared", seeds: compared, read: results::compared },
 ];
 
 fn texts(texts: &[&str]) -> Vec<Vec<u8>> {
@@ -85,10 +89,31 @@ fn cases() -> Vec<Vec<u8>> {
         include_str!("../../../cases/sandpile.toml"),
         include_str!("../../../cases/sandpile_walls.toml"),
         include_str!("../../../cases/silo_hole.toml"),
+        include_str!("../../../cases/debris_flow.toml"),
+        include_str!("../../../cases/rock_avalanche.toml"),
+        include_str!("../../../cases/snow_avalanche.toml"),
+        PICKED_UP,
+        DRAWN,
         "model = \"savage_hutter\"\ngrid.x = { from = 0, to = 1, cells = 9 }\n\
          material.friction.coulomb.mu = 0.3\ninitial.thickness.formula = \"x\"\n[time]\nuntil = \"rest\"\n",
     ])
 }
+
+/// What acts between the steps, and what is looked at.
+const PICKED_UP: &str = "model = \"savage_hutter\"\n[terrain]\ndem = \"a.asc\"\n[[release]]\nraster = \"h.asc\"\n[[release]]\n\
+    result = \"earlier/result.nc\"\n[[release]]\ncap = { height = 2, centre = [5, 5], radius = 3 }\nat = 8\n\
+    [[inflow]]\nline = [[1, 1], [2, 2]]\nhydrograph = { time = [0, 9], discharge = [3, 0], speed = [1, 2] }\n\
+    [material]\ndensity = 300\nfriction.coulomb.mu = 0.3\nforest = 0.02\nforest_breaks_at = 90\n\
+    earth_pressure.active_passive = { internal = \"35 deg\" }\n[entrainment]\nlayer = 0.3\nlaw.shear = { threshold = 1000, depth_by_stress = 1e-4, rate = 0.025 }\n\
+    lower_bed = true\n[[gauge]]\nname = \"road\"\nat = [3, 4]\n[[section]]\nname = \"fan\"\nline = [[0, 1], [9, 1]]\n\
+    [time]\nuntil = \"rest\"\ntrickle = 0.1\n[output]\nevery = 5\ndurations = { thickness = 0.5 }\n";
+/// Many runs.
+const DRAWN: &str = "grid.x = { from = 0, to = 9, cells = 9 }\nmaterial.friction.coulomb.mu = 0.3\n\
+    initial.thickness.cap = { height = 1, centre = 4, radius = 3 }\ntime.end = 1\n[ensemble]\nmembers = 64\nseed = 7\n\
+    sampling = \"latin_hypercube\"\nvary.\"material.friction.coulomb.mu\" = { normal = { mean = 0.3, sd = 0.05, min = 0.1, max = 0.6 } }\n\
+    vary.\"initial.thickness.cap.height\" = { factor = { lognormal = { median = 1, sigma = 0.2 } } }\n\
+    vary.\"material.slope\" = { uniform = [20, 30], unit = \"deg\" }\nvary.\"time.end\" = { choice = [1, 2] }\n\
+    exceed = { peak_thickness = [0.5], peak_speed = [1] }\npercentiles = [5, 50, 95]\nclasses = 16\n";
 
 fn case(bytes: &[u8]) {
     let text = String::from_utf8_lossy(bytes);
@@ -135,6 +160,34 @@ fn arrays() -> Vec<Vec<u8>> {
 
 fn tables() -> Vec<Vec<u8>> {
     texts(&["# thickness\n1, 2, 3\n4, 5, 6\n", "1;2;3\n\n4\t5 6e-3"])
+}
+
+fn hydrographs() -> Vec<Vec<u8>> {
+    texts(&[
+        "time [s], discharge [m3/s], speed [m/s]\n0, 0, 0\n5, 178, 2.5\n112.4, 0, 0\n",
+        "\u{feff}Zeit;Abfluss\n0;1,5\n60;0\n",
+        "0 2\n# a pause\n1e1\t4\n",
+    ])
+}
+
+fn hydrograph(bytes: &[u8]) {
+    let text = "model = \"savage_hutter\"\ntime.end = 9\nmaterial.friction.coulomb.mu = 0.3\nterrain.dem = \"a.asc\"\n\
+                inflow = [{ line = [[0, 0], [1, 1]], hydrograph = \"q.csv\" }]\n";
+    check(text, bytes);
+}
+
+/// What `granflow compare` takes beside the result of a run.
+fn compared() -> Vec<Vec<u8>> {
+    let ours = r#"{"type":"FeatureCollection","features":[
+        {"type":"Feature","properties":{"name":"release"},"geometry":{"type":"Polygon","coordinates":
+        [[[0.1,0.1],[0.3,0.1],[0.3,0.3],[0.1,0.1]]]}},
+        {"type":"Feature","properties":{"name":"deposit"},"geometry":{"type":"Polygon","coordinates":
+        [[[0.2,0.2],[0.9,0.2],[0.9,0.8],[0.2,0.2]]]}},
+        {"type":"Feature","properties":{"name":"peak_thickness"},"geometry":{"type":"MultiPolygon","coordinates":
+        [[[[0.1,0.1],[0.9,0.2],[0.9,0.8],[0.1,0.1]]]]}}]}"#;
+    let thickness =
+        "ncols 3\nnrows 2\nxllcorner 0\nyllcorner 0\ncellsize 0.4\nNODATA_value -1\n1 2 0\n0.4 nan -1\n";
+    [texts(&[ours, thickness]), geojson(), shapes(), images()].concat()
 }
 
 fn raster(bytes: &[u8]) {

@@ -2,9 +2,12 @@
 
 use granflow::Case;
 use granflow::Inputs;
+use granflow::compare::{By, compare};
+use granflow::ensemble::Ensemble;
 use granflow::output::checkpoint::{Checkpoint, Origin};
 use granflow::output::frames::Frames;
 use granflow::output::ledger::Ledger;
+use granflow::output::lines::Table;
 use granflow::output::summary::Summary;
 use granflow::results::Story;
 use granflow::session::{Options, origin};
@@ -16,6 +19,12 @@ const CHUTE: &str = "grid.x = { from = 0, to = 1, cells = 6 }\nmaterial.friction
                      initial.thickness.cap = { height = 1, centre = 0.5, radius = 0.3 }\ntime.steps = 3\noutput.steps = 2\n";
 const TABLE: &str = "model = \"hadeler_kuttler\"\n[grid]\nx = { from = 0, to = 1, cells = 4 }\ny = { from = 0, to = 1, cells = 3 }\n\
                      [[source]]\nrate = 1\n[time]\nsteps = 2\n[output]\nsteps = 2\n";
+
+const PLANE: &str = "grid.x = { from = 0, to = 1, cells = 6 }\ngrid.y = { from = 0, to = 1, cells = 5 }\n\
+                     material.friction.coulomb.mu = 0.3\n\
+                     initial.thickness.cap = { height = 1, centre = [0.5, 0.5], radius = 0.3 }\ntime.steps = 3\n";
+const MANY: &str = "[ensemble]\nmembers = 3\nexceed.peak_speed = [0.1]\n\
+                    vary.\"material.friction.coulomb.mu\" = { uniform = [0.2, 0.4] }\n";
 
 /// What a small run left, by the names of the files in its folder.
 struct Left {
@@ -110,10 +119,73 @@ pub fn ledger(bytes: &[u8]) {
     });
 }
 
+pub fn series() -> Vec<Vec<u8>> {
+    [
+        "name,time,thickness,speed\nroad,0.0,1.5,\nhouse,0.0,,0.25\nroad,0.5,2.5,1e-3\nhouse,0.5,0.25,-0.0\n",
+        "name,time,discharge\nweir,0,1\n",
+    ]
+    .map(|text| text.as_bytes().to_vec())
+    .into()
+}
+
+pub fn table(bytes: &[u8]) {
+    let Ok(table) = Table::parse(Path::new("gauges.csv"), &String::from_utf8_lossy(bytes)) else { return };
+    let cells = table.names.len() * table.times.len();
+    assert!(table.values.iter().all(|column| column.len() <= cells), "{table:?}");
+}
+
 pub fn summary(bytes: &[u8]) {
     on_disk("summary.json", bytes, |path| drop(Summary::read(path)));
 }
 
 pub fn result(bytes: &[u8]) {
     on_disk("result.nc", bytes, |path| drop(Story::read(path)));
+}
+
+/// An ensemble of three members.
+fn many() -> &'static Ensemble {
+    static MANY_RUNS: OnceLock<Ensemble> = OnceLock::new();
+    MANY_RUNS.get_or_init(|| {
+        let case = Case::parse(&[CHUTE, MANY].concat(), "case.toml").expect("the case is in order");
+        Ensemble::of(&case).expect("the case is in order")
+    })
+}
+
+/// A part of one member and one of two.
+pub fn parts() -> Vec<Vec<u8>> {
+    let part = |members: std::ops::Range<u32>| {
+        let mut reduced = many().empty();
+        let stop = AtomicBool::new(false);
+        members.for_each(|number| reduced.add(many().compute(number, &stop).expect("nobody stops it")));
+        many().to_bytes(&reduced)
+    };
+    vec![part(0..1), part(1..3)]
+}
+
+/// With a checksum that fits, as [`checkpoint`].
+pub fn part(bytes: &[u8]) {
+    let body = &bytes[..bytes.len().saturating_sub(4)];
+    let sealed = [body, &crc32fast::hash(body).to_le_bytes()].concat();
+    for bytes in [bytes, &sealed] {
+        let Ok(reduced) = many().from_bytes(bytes, Path::new("part.bin")) else { continue };
+        let mut all = many().empty();
+        if all.merge(reduced).is_ok() && all.computed() > 0 {
+            drop(many().maps(&all));
+        }
+        drop(many().to_bytes(&all));
+    }
+}
+
+/// Beside the result of a run on a plane: the numbers of a comparison are numbers.
+pub fn compared(bytes: &[u8]) {
+    static RUN: OnceLock<Left> = OnceLock::new();
+    let run = RUN.get_or_init(|| compute(PLANE)).folder.path();
+    on_disk("mapped", bytes, |path| {
+        for by in [By::Footprint, By::Deposit] {
+            let options = granflow::compare::Options { by, ..Default::default() };
+            let Ok(found) = compare(run, path, &options) else { continue };
+            assert!((0.0..=1.0).contains(&found.csi), "{found:?}");
+            assert!(found.miss_area >= 0.0 && found.false_area >= 0.0, "{found:?}");
+        }
+    });
 }

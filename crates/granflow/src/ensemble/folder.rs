@@ -124,7 +124,16 @@ impl Ensemble {
         let name = format!("part-{number}-of-{count}");
         let [path, under_way] =
             ["bin", "begun"].map(|ending| options.directory.join(format!("{name}.{ending}")));
-        let begun = [&path, &under_way].into_iter().find_map(|path| self.read(path).ok());
+        let taken = |path: &PathBuf| match self.read(path) {
+            Ok(reduced) if reduced.members().all(|number| members.contains(&number)) => Some(reduced),
+            other => {
+                let another = || format!("{}: it is another part", path.display());
+                let why = other.err().map_or_else(another, |error| error.to_string());
+                (options.notice)(&format!("{why}; this one is computed again"));
+                None
+            }
+        };
+        let begun = [&path, &under_way].into_iter().filter(|path| path.exists()).find_map(taken);
         let keep = |reduced: &Reduced| self.write(reduced, &under_way);
         let begun = begun.unwrap_or_else(|| self.empty());
         let mut listen = |progress: Progress, _: Option<&Outcome>| hear(progress);

@@ -64,7 +64,10 @@ pub(crate) fn decode<'a>(path: &Path, bytes: &'a [u8], origin: &Origin) -> Resul
 
 /// Header and numbers of a part of any origin, computed by this version; messages name `path`.
 pub(crate) fn open<'a>(path: &Path, bytes: &'a [u8]) -> Result<(Header, &'a [u8]), Error> {
-    let altered = || Error::damaged(path, "the part is truncated or altered; compute it again");
+    let altered = || {
+        let problem = "the part is truncated or altered; compute it again, an ensemble in a folder by the same command without --resume";
+        Error::damaged(path, problem)
+    };
     let Some(rest) = bytes.strip_prefix(MAGIC) else {
         let problem = "this is no part of an ensemble; `granflow ensemble --part 1/16` writes one";
         return Err(Error::damaged(path, problem));
