@@ -73,7 +73,7 @@ function ticks(low, high) {
   return Array.from({ length: Math.floor(high / step + 1e-9) - first + 1 }, (_, k) => (first + k) * step)
 }
 
-const short = value => (Math.abs(value) < 1e-12 ? '0' : String(+value.toPrecision(4)))
+const short = value => (Math.abs(value) < 1e-12 ? '0' : Math.abs(value) < 1e-3 ? value.toExponential(0) : String(+value.toPrecision(4)))
 
 function spanned(lines) {
   const all = key => lines.flatMap(one => Array.from(one[key])).filter(Number.isFinite)

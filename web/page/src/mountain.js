@@ -26,6 +26,7 @@ export function mountain(client, place) {
   let stride = 1 // cells for each point of the picture
   let gauge = null // { at: [x, y], cell, times, thickness, speed }
   let relief = null
+  let spoken = 0 // when the words were last written
 
   const error = make('div', { class: 'error', role: 'alert', hidden: true })
   const view = make('div', { class: 'relief' })
@@ -46,6 +47,7 @@ export function mountain(client, place) {
       play.textContent = player.playing ? 'Pause' : 'Run'
       play.disabled = player.ended || !run
       step.disabled = play.disabled || player.playing
+      if (relief) relief.plays = player.playing
       clock.setAttribute('aria-live', player.playing ? 'off' : 'polite')
     },
     failed: reason => complain(error, reason),
@@ -130,6 +132,10 @@ export function mountain(client, place) {
     const most = field ? field.reduce((most, value) => (value > most ? value : most), 5 * least) : 1
     const rings = drawing ? [drawing.length === 1 ? [...drawing, ...drawing] : [...drawing, ...drawing.slice(0, 1)]] : site.release?.rings ?? []
     relief.colour(field, { scale, most, least }, rings.map(ring => ring.map(pointOf)), gauge ? pointOf(gauge.at) : null)
+    // Words are read slower than a picture is seen, and cost more to draw.
+    const now = performance.now()
+    if (player.playing && now - spoken < 200) return
+    spoken = now
     legend.style.setProperty('--scale', gradient(scale))
     legend.textContent = `${words}: 0 to ${fixed(most)} ${unit}`
     say(words, most, unit)
@@ -317,7 +323,7 @@ export function mountain(client, place) {
       saves('case.toml', () => download('case.toml', text())),
       saves('All as a zip: case, files, maps', archive),
       saves('GeoTIFF of what is shown', async () => run && download(`${chosen.shown}.tif`, await client.call('geotiff', run.handle, chosen.shown), 'image/tiff')),
-      saves('PNG of the view', () => relief?.canvas.toBlob(blob => download('mountain.png', blob)))))
+      saves('PNG of the view', async () => relief && download('mountain.png', await relief.png()))))
   listen()
   offerParameters()
   return { reset, player, take, idle: () => reset.waiting + take.waiting + finish.waiting === 0, redraw: draw, open: () => relief || reset(), run: () => run, site: () => site, relief: () => relief, text }

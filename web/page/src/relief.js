@@ -6,7 +6,9 @@ import {
 import { OrbitControls } from 'three/addons/controls/OrbitControls.js'
 import { hillshade, paint, shaded } from './colours.js'
 
-const FINEST = 160 // nodes of the relief along an axis: the picture over it is finer
+const FINEST = 110 // nodes of the relief along an axis: the picture over it is finer
+const SLOW = 50 // milliseconds between two pictures, from which on they have a quarter of the points
+const REST = 400 // milliseconds without a new one, after which the picture is sharp again
 // Rows and columns of the picture at most; each of its points stands for a block of cells where there are more.
 export const PICTURE = 700
 
@@ -18,6 +20,10 @@ export class Relief {
   south = 0
   low = 0
   drop = 0
+  sharpness = 1
+  pace = 0 // milliseconds between two pictures, smoothed
+  last = 0 // time of the last one
+  plays = false // more pictures will come
   z = new Float64Array(1)
   shade = new Float32Array(1)
   ground = new Uint8Array(4)
@@ -28,7 +34,7 @@ export class Relief {
   mesh = null
 
   constructor(place) {
-    this.renderer = new WebGLRenderer({ antialias: false, alpha: true, preserveDrawingBuffer: true })
+    this.renderer = new WebGLRenderer({ antialias: false, alpha: true })
     this.renderer.outputColorSpace = SRGBColorSpace
     this.canvas = this.renderer.domElement
     this.canvas.setAttribute('role', 'img')
@@ -45,22 +51,47 @@ export class Relief {
     this.controls.addEventListener('change', () => { this.stale = true })
     new ResizeObserver(() => this.fit(place)).observe(place)
     this.fit(place)
-    const loop = () => {
+    const loop = now => {
       requestAnimationFrame(loop)
-      if (this.stale && place.offsetParent !== null) this.draw()
+      if (place.offsetParent === null) return
+      if (this.stale) {
+        const passed = now - this.last
+        if (passed < REST) this.pace += 0.2 * (passed - this.pace)
+        if (this.pace > SLOW) this.sharpen(0.5)
+        this.draw()
+        this.last = now
+      } else if (this.sharpness < 1 && !this.plays && now - this.last > REST) {
+        this.sharpen(1)
+        this.draw()
+        this.pace = 0
+      }
     }
-    loop()
+    loop(0)
   }
 
   fit(place) {
     const width = place.clientWidth
     if (!width) return
     const height = Math.max(260, Math.min(0.62 * width, 0.7 * window.innerHeight))
-    this.renderer.setPixelRatio(Math.min(window.devicePixelRatio || 1, 2))
+    this.renderer.setPixelRatio(this.sharpness * Math.min(window.devicePixelRatio || 1, 2))
     this.renderer.setSize(width, height)
     this.camera.aspect = width / height
     this.camera.updateProjectionMatrix()
     this.stale = true
+  }
+
+  // Points of the picture for each of the screen: fewer where a machine draws slowly.
+  sharpen(sharpness) {
+    if (sharpness === this.sharpness) return
+    this.sharpness = sharpness
+    this.renderer.setPixelRatio(sharpness * Math.min(window.devicePixelRatio || 1, 2))
+  }
+
+  // The picture as it is, as a PNG.
+  png() {
+    this.sharpen(1)
+    this.draw()
+    return new Promise(done => this.canvas.toBlob(done))
   }
 
   draw() {

@@ -78,6 +78,7 @@ function tools(page, pictures, program) {
     },
     // How many colours a canvas shows, by a coarse count: a blank one has one.
     colours: selector => page.$eval(selector, canvas => {
+      window.granflow.tabs.mountain.relief().draw() // its picture is kept for one frame
       const small = new OffscreenCanvas(64, 64)
       const context = small.getContext('2d')
       context.drawImage(canvas, 0, 0, 64, 64)

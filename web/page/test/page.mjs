@@ -38,6 +38,8 @@ await opened(process.argv.slice(2), async ({ page, idle, ended, click, choose, p
   const canvas = await page.locator('#mountain .relief canvas').boundingBox()
   await page.mouse.click(canvas.x + 0.5 * canvas.width, canvas.y + 0.5 * canvas.height)
   check(await page.isVisible('#mountain canvas.chart'), `a click shows what passes there: ${await page.getAttribute('#mountain canvas.chart', 'aria-label')}`)
+  const png = await saved('PNG of the view')
+  check(png['mountain.png'].length > 20_000, `the view as a PNG of ${png['mountain.png'].length} bytes`)
   await choose('Shown', 'deposit')
   await page.waitForTimeout(500)
   await picture('mountain')
