@@ -88,10 +88,11 @@ def same(earlier, folder):
                                                        for path in files)
 
 
-def com1dfa(folder, dem, release, settings, name, earlier=None):
+def com1dfa(folder, dem, release, settings, name, earlier=None, layer=None):
     """Lays out AvaFrame's folders, runs com1DFA in a process of its own, and reads its maps; `release` is a shapefile or a raster.
 
-    `earlier` is the folder of such a run: its results are taken if it was asked for the same.
+    `earlier` is the folder of such a run: its results are taken if it was asked for the same. `layer` is a raster of the thickness that
+    can be entrained.
     """
     (folder / "Inputs" / "REL").mkdir(parents=True)
     shutil.copy(dem, folder / "Inputs" / f"dem{dem.suffix}")
@@ -99,6 +100,9 @@ def com1dfa(folder, dem, release, settings, name, earlier=None):
         shutil.copy(dem.with_suffix(".prj"), folder / "Inputs" / "dem.prj")
     for part in release.parent.glob(f"{release.stem}.*"):
         shutil.copy(part, folder / "Inputs" / "REL" / f"release{part.suffix}")
+    if layer:
+        (folder / "Inputs" / "ENT").mkdir()
+        shutil.copy(layer, folder / "Inputs" / "ENT" / f"layer{layer.suffix}")
     lines = "".join(f"{key} = {value}\n" for key, value in settings.items())
     (folder / "settings.ini").write_text(f"[GENERAL]\n{lines}", encoding="utf-8")
     if earlier and same(earlier, folder):

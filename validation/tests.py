@@ -46,6 +46,40 @@ class Scores(unittest.TestCase):
         self.assertEqual(scores.runout(numpy.zeros((1, 4)), heights, released, from_origin(0, 10, 10, 10)), (None, None))
 
 
+class Entrainment(unittest.TestCase):
+    def test_the_layer_lies_on_data_that_no_release_touches(self):
+        import entrainment
+        import numpy
+        import rasterio
+        from rasterio.transform import from_origin
+
+        with tempfile.TemporaryDirectory() as folder:
+            folder = pathlib.Path(folder)
+            heights = numpy.full((3, 4), 100.0, "float32")
+            heights[2, 3] = -9999
+            with rasterio.open(folder / "dem.tif", "w", driver="GTiff", width=4, height=3, count=1, dtype="float32", nodata=-9999,
+                               transform=from_origin(0, 30, 10, 10)) as file:
+                file.write(heights, 1)
+            release = {"type": "Polygon", "coordinates": [[[2, 22], [8, 22], [8, 28], [2, 28], [2, 22]]]}
+            path = entrainment.layer(folder / "layer.tif", folder / "dem.tif", [release], 0.25)
+            with rasterio.open(path) as file:
+                values = file.read(1)
+            self.assertEqual(values.sum(), 0.25 * 10)
+            self.assertEqual((values[0, 0], values[2, 3], values[0, 1]), (0, 0, 0.25))
+
+    def test_what_com1dfa_entrained_is_what_its_mass_grew_by(self):
+        import types
+
+        import entrainment
+
+        with tempfile.TemporaryDirectory() as folder:
+            outputs = pathlib.Path(folder) / "Outputs" / "com1DFA"
+            outputs.mkdir(parents=True)
+            (outputs / "mass_a.txt").write_text("time, current, entrained\n0.1, 100.0, 0.0\n0.2, 130.5, 30.5\n0.3, 150.5, 20.0\n", encoding="utf-8")
+            run = types.SimpleNamespace(version="AvaFrame 2.1", folder=pathlib.Path(folder))
+            self.assertEqual(entrainment.entrained(run), 50.5)
+
+
 class Similarity(unittest.TestCase):
     def test_without_friction_the_half_axis_is_a_root(self):
         import numpy
