@@ -2,6 +2,7 @@
 
 mod going_on;
 mod resumed;
+mod state;
 mod written;
 
 use granflow::Case;
