@@ -54,6 +54,8 @@ class Case:
         elif source is not None:
             if tables:
                 raise TypeError("give a file, a text or keywords, not two of them; Case.set changes a key")
+            if not isinstance(source, (str, PathLike)) or not fspath(source):
+                raise TypeError(f"a case is a path, its text, a dictionary or keywords, found {source!r}")
             self._source, self._native = _read(fspath(source), isinstance(source, str))
             self._on_terrain = "[terrain]" in self._native.to_toml()
             return
@@ -63,7 +65,7 @@ class Case:
         self._source = (_toml.document(plain), "<keywords>")
         native = _native.Case.from_text(*self._source)
         for name, given in held.items():
-            native = _hold(native, name, given)
+            native, held[name] = _hold(native, name, given)
         native.to_toml()
         self._native, self._held = native, held
 
@@ -83,8 +85,8 @@ class Case:
             plain = self._plain(key, value, held)
             native = self._native
             for name, given in held.items():
-                native = _hold(native, name, given)
-            override = f"{key}={_toml.value(plain)}"
+                native, held[name] = _hold(native, name, given)
+            override = f"{key}={_toml.value(plain, key)}"
             native = native.with_override(override)
             native.to_toml()
         except BaseException:
@@ -142,9 +144,13 @@ class Case:
     def _plain(self, path: str, given: Any, held: dict[str, Any]) -> Any:
         """What TOML can say of a value; arrays and geometries in it go to `held` under the name that stands for them."""
         last = path.rsplit(".", 1)[-1]
+        if isinstance(given, xr.Dataset):
+            raise TypeError(f"{path}: a Dataset has several variables: give one, as in ds['elevation']")
+        if path == "release" and _memory.is_geometry(given) and not isinstance(given, (list, tuple)):
+            given = [given]
         if last == "line" and is_line(given):
             return _memory.line(given)
-        if _memory.is_geometry(given):
+        if _memory.is_geometry(given) and not (path == "release" and isinstance(given, (list, tuple))):
             held[f"<{path}>"] = _memory.geojson(given)
             return f"<{path}>" if last in _NAMED else {"polygons": f"<{path}>"}
         if isinstance(given, Mapping):
@@ -168,7 +174,7 @@ class Case:
             return _values(given).tolist()
         raster = self._raster(path, given)
         if path == "terrain.dem":
-            self._grounds = raster
+            self._grounds = raster.without_values()
         held[f"<{path}>"] = raster
         return f"<{path}>" if last in _NAMED else {"raster": f"<{path}>"}
 
@@ -219,7 +225,7 @@ def _again(
     """A case out of its parts, in another process."""
     native, (overrides, member) = _native.Case.from_text(text, name), layers
     for key, given in held.items():
-        native = _hold(native, key, given)
+        native, held[key] = _hold(native, key, given)
     for override in overrides:
         native = native.with_override(override)
     if member is not None:
@@ -230,8 +236,10 @@ def _again(
     return case
 
 
-def _hold(native: _native.Case, name: str, given: Any) -> _native.Case:
+def _hold(native: _native.Case, name: str, given: Any) -> tuple[_native.Case, Any]:
+    """A case that has what is given in memory, and the same as it holds it: what happens to an array later is not seen."""
     if isinstance(given, Raster):
         values = given.south_first()
-        return native.with_raster(name, values, given.west, given.south, given.cell, given.system())
-    return native.with_file(name, given)
+        native = native.with_raster(name, values, given.west, given.south, given.cell, given.system())
+        return native, given.with_values(given.as_given(native.raster(name)))
+    return native.with_file(name, given), given

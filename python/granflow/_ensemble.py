@@ -19,7 +19,7 @@ import xarray as xr
 from . import _native
 from ._case import Case, as_case
 from ._errors import CaseError, ComputationError, GranflowWarning
-from ._run import _dataset, _wants_bar, _warn, run
+from ._run import _dataset, _wants_bar, _warn, run, whole
 from ._tables import as_table
 
 #: A chunk that a worker loses is computed again so many times.
@@ -109,7 +109,7 @@ class Ensemble:
         with _Bar(len(wanted), _wants_bar() if progress is None else progress) as bar:
             bar.done(len(wanted) - len(left))
             if executor is None:
-                self._run_here(_ranges(left, len(left)), threads or 0, bar)
+                self._run_here(_ranges(left, len(left)), whole("threads", threads or 0), bar)
             else:
                 self._run_on(executor, list(_ranges(left, chunk or _chunk(len(left)))), bar)
         return self._results()

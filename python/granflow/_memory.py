@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import io
 import json
-from collections.abc import Mapping, Sequence
+import math
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Any, Literal
 
@@ -39,6 +40,10 @@ class Raster:
             raise ValueError(f"a raster has the shape (rows, columns), found {values.shape}")
         if not np.issubdtype(values.dtype, np.number) or np.iscomplexobj(values):
             raise ValueError(f"a raster holds numbers, found {values.dtype}")
+        numbers = {"cell": self.cell, "west": self.west, "south": self.south}
+        for name, number in numbers.items():
+            if not isinstance(number, (int, float, np.integer, np.floating)) or not np.isfinite(number):
+                raise ValueError(f"{name} = {number!r}: it is a number, in metres")
         if not self.cell > 0.0:
             raise ValueError(f"cell = {self.cell}: the edge length of a cell is a number > 0, in metres")
         if self.first_row not in ("south", "north"):
@@ -72,7 +77,8 @@ class Raster:
         dx = _spacing(x, array.dims[1])
         dy = _spacing(y, array.dims[0])
         if dx <= 0.0 or not np.isclose(abs(dy), dx, rtol=1e-6):
-            raise ValueError(f"the cells must be square with x growing, found spacings of {dx} and {dy}")
+            cure = f"; array.sortby({array.dims[1]!r}) turns it" if dx < 0.0 else ""
+            raise ValueError(f"the cells must be square with x growing, found spacings of {dx} and {dy}{cure}")
         values = np.asarray(array.values, dtype=np.float64)
         for name in ("_FillValue", "nodata"):
             nodata = array.attrs.get(name)
@@ -89,6 +95,14 @@ class Raster:
         """The values as the engine takes them, row 0 in the south."""
         values = numbers(self.values)
         return values[::-1] if self.first_row == "north" else values
+
+    def as_given(self, values: NDArray[np.float64]) -> NDArray[np.float64]:
+        """Values with row 0 in the south in the order of this raster."""
+        return values[::-1] if self.first_row == "north" else values
+
+    def without_values(self) -> Raster:
+        """The same cells, of which no value is known: takes no memory."""
+        return self.with_values(np.broadcast_to(np.float64(np.nan), np.shape(self.values)))
 
     def system(self) -> str | None:
         """The reference system as text."""
@@ -195,9 +209,19 @@ def _dumped(found: Mapping[str, Any]) -> bytes:
     return json.dumps(_plain(found)).encode()
 
 
+def _numbers_in(coordinates: Any) -> Iterator[float]:
+    if isinstance(coordinates, (list, tuple)):
+        for one in coordinates:
+            yield from _numbers_in(one)
+    else:
+        yield float(coordinates)
+
+
 def _plain(given: Any) -> Any:
     """What JSON can say of a value; an attribute without a value is null."""
     if isinstance(given, Mapping):
+        if "coordinates" in given and not all(map(math.isfinite, _numbers_in(given["coordinates"]))):
+            raise ValueError("a geometry has a corner that is not a number")
         return {str(name): _plain(one) for name, one in given.items()}
     if isinstance(given, (list, tuple)):
         return [_plain(one) for one in given]

@@ -5,7 +5,8 @@ from __future__ import annotations
 import sys
 import warnings
 from collections.abc import Callable, Mapping
-from os import PathLike
+from os import PathLike, fspath
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -21,13 +22,19 @@ def run(
     *,
     threads: int | None = None,
     progress: bool | None = None,
+    out: str | PathLike[str] | None = None,
+    resume: bool = False,
 ) -> xr.Dataset:
-    """Computes a case and returns what its ``result.nc`` would hold, without a file.
+    """Computes a case and returns what its ``result.nc`` would hold; without `out` no file is written.
 
     Args:
         case: a :class:`Case`, or what one is made of: a path, a text, a dictionary.
         threads: so many threads; None takes all cores. Results are the same bits for any number.
         progress: show a bar; None shows one in a notebook and where standard error is a terminal.
+        out: a folder for all that ``granflow run`` writes (``result.nc``, ``summary.json``, ``mass.csv``, what ``output.files`` asks for),
+            the same bits; what an earlier run left there goes into ``previous/``, with a warning.
+        resume: go on from the checkpoint in `out`: of a run that was stopped or killed, or with another ``time.end`` or friction. A run
+            that has ended is not computed again; its ``result.nc`` is then opened by xarray, which needs netCDF4 or h5netcdf.
 
     Returns:
         The series over ``time`` (``thickness``, ``velocity_x``, ...; shape (time, y, x) or (time, x)), the maps (``peak_speed``,
@@ -37,13 +44,26 @@ def run(
     Raises:
         CaseError: the case is wrong; a FileNotFoundError too where a file is missing.
         ComputationError: a step could not be taken, or a result breaks a law of its own.
-        KeyboardInterrupt: Ctrl-C; the run ends at its next step.
+        ValueError: with `resume`, there is nothing in `out` that this case can go on from; the reason is said.
+        KeyboardInterrupt: Ctrl-C; the run ends at its next step, and with `out` all files are whole and ``resume=True`` goes on.
     """
+    if resume and out is None:
+        raise ValueError("resume=True goes on from a folder: name it by out=...")
     case = as_case(case)
     with _Bar(_wants_bar() if progress is None else progress) as show:
-        found = _native.run(case._native, threads or 0, show)
+        found = _native.run(case._native, whole("threads", threads or 0), show, out, resume)
+    if "ended" in found:
+        warnings.warn(found["ended"], GranflowWarning, stacklevel=2)
+        return _opened(Path(fspath(out or "")))
     _warn(found["remarks"])
     return _dataset(found)
+
+
+def whole(name: str, given: int) -> int:
+    """A number of things, from 0 on."""
+    if given < 0:
+        raise ValueError(f"{name} = {given}: it is a number from 0 on")
+    return given
 
 
 def _dataset(found: dict[str, Any]) -> xr.Dataset:
@@ -56,6 +76,14 @@ def _dataset(found: dict[str, Any]) -> xr.Dataset:
     dataset = xr.Dataset(variables, coords, found["attrs"])
     if "summary" in found:
         dataset.attrs["summary"] = found["summary"]
+    return dataset
+
+
+def _opened(folder: Path) -> xr.Dataset:
+    """What a run that has ended left in a folder."""
+    with xr.open_dataset(folder / "result.nc", decode_times=False) as stored:
+        dataset = stored.load()
+    dataset.attrs["summary"] = (folder / "summary.json").read_text(encoding="utf-8")
     return dataset
 
 

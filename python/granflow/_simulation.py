@@ -2,16 +2,18 @@
 
 from __future__ import annotations
 
+import warnings
 from collections.abc import Iterator, Mapping
 from os import PathLike
-from typing import Any
+from typing import Any, overload
 
 import numpy as np
 from numpy.typing import NDArray
 
 from . import _native
 from ._case import Case, as_case
-from ._errors import StaleViewError
+from ._errors import GranflowWarning, StaleViewError
+from ._run import whole
 
 
 class StateView(np.ndarray):
@@ -76,7 +78,7 @@ def _plain(given: Any) -> Any:
 
 
 class Checkpoint:
-    """A state of a simulation to go on from: ``Simulation(case, checkpoint=...)`` ends with the same bits."""
+    """A state of a simulation in memory: what goes on from it ends with the same bits."""
 
     def __init__(self, native: _native.Checkpoint) -> None:
         self._native = native
@@ -94,11 +96,11 @@ class Simulation:
     Args:
         case: a :class:`Case`, or what one is made of.
         threads: so many threads; None takes all cores.
-        checkpoint: go on from there; it must come from a simulation of this case.
+        checkpoint: go on from there: a :class:`Checkpoint`, or the path of a file, see :meth:`restore`.
 
     Raises:
         CaseError, FileNotFoundError, MemoryError: the case cannot be started.
-        ValueError: the checkpoint is that of another case.
+        ValueError: the checkpoint is that of another case, or of other files that the case names.
 
     Every method that steps hears Ctrl-C (KeyboardInterrupt; the simulation then stands after its last step) and raises
     :class:`ComputationError` for a step that cannot be taken.
@@ -109,25 +111,46 @@ class Simulation:
         case: Case | str | PathLike[str] | Mapping[str, Any],
         *,
         threads: int | None = None,
-        checkpoint: Checkpoint | None = None,
+        checkpoint: Checkpoint | str | PathLike[str] | None = None,
     ) -> None:
-        saved = None if checkpoint is None else checkpoint._native
-        self._native = _native.Simulation(as_case(case)._native, threads or 0, saved)
+        self._case, self._threads = as_case(case)._native, whole("threads", threads or 0)
         self._moves = 0
+        self._computed: dict[str, NDArray[np.float64]] = {}
+        self._native = self._begun(checkpoint)
+
+    def _begun(self, checkpoint: Checkpoint | str | PathLike[str] | None) -> _native.Simulation:
+        saved = checkpoint._native if isinstance(checkpoint, Checkpoint) else None
+        path = None if isinstance(checkpoint, Checkpoint) else checkpoint
+        native, changes = _native.Simulation.begin(self._case, self._threads, saved, path)
+        for change in changes:
+            text = f"the simulation goes on from a checkpoint with another case: {change}"
+            warnings.warn(text, GranflowWarning, stacklevel=3)
+        return native
+
+    def _moved(self) -> None:
+        self._moves += 1
+        self._computed = {}
 
     def step(self, count: int = 1) -> None:
         """So many steps; fewer where nothing can move any more."""
-        self._moves += 1
+        whole("count", count)
+        self._moved()
         self._native.step(count)
 
     def until(self, time: float) -> None:
-        """To a time; the last step is cut there."""
-        self._moves += 1
+        """To a time; the last step is cut there.
+
+        Raises:
+            ValueError: the simulation is beyond it; a checkpoint goes back.
+        """
+        if time < self.time:
+            raise ValueError(f"time {time} is over, the simulation is at {self.time}: restore goes back to a checkpoint")
+        self._moved()
         self._native.until(time)
 
     def to_rest(self, limit: float | None = None) -> bool:
         """Until all rests, or to the time `limit` (None: the ``time.end`` of the case). Returns whether it rests."""
-        self._moves += 1
+        self._moved()
         return self._native.rest(limit)
 
     def frames(self, every: float) -> Iterator[Simulation]:
@@ -137,30 +160,64 @@ class Simulation:
         """
         yield self
         while True:
-            self._moves += 1
+            self._moved()
             if not self._native.next_frame(every):
                 return
             yield self
 
-    def checkpoint(self) -> Checkpoint:
-        """The state to go on from, copied; of a state that :meth:`frames` shows within a step the end of the step."""
-        self._moves += 1
-        return Checkpoint(self._native.checkpoint())
+    @overload
+    def checkpoint(self, path: None = None) -> Checkpoint: ...
+    @overload
+    def checkpoint(self, path: str | PathLike[str]) -> None: ...
+    def checkpoint(self, path: str | PathLike[str] | None = None) -> Checkpoint | None:
+        """The state to go on from, copied, or written into a file, whole or not at all: see :meth:`restore`.
+
+        Of a state that :meth:`frames` shows within a step it is the end of the step.
+
+        Args:
+            path: the file; an older one is replaced once the new one is complete on the disk. Its folder is made.
+
+        Raises:
+            OSError: the disk refuses.
+        """
+        self._moved()
+        if path is None:
+            return Checkpoint(self._native.checkpoint())
+        self._native.checkpoint_to(path)
+        return None
+
+    def restore(self, checkpoint: Checkpoint | str | PathLike[str]) -> None:
+        """Goes to a state that :meth:`checkpoint` gave or wrote, here or in another process; what follows has the same bits.
+
+        The case must be that of then with the same inputs, but for what a run may go on with: ``time``, ``output``, friction (a
+        :class:`GranflowWarning` says what differs). The ``checkpoint/state.bin`` of a run in a folder is taken too. The case is set up again,
+        with the time that this takes.
+
+        Raises:
+            FileNotFoundError, ValueError: there is no such file; it is damaged, of another case, other inputs or another version of
+                granflow. The simulation then stands where it stood.
+        """
+        native = self._begun(checkpoint)
+        self._moved()
+        self._native = native
 
     def __getitem__(self, name: str) -> NDArray[np.float64]:
         """A field of the state, read-only; shape (rows, columns) or (cells), row 0 at the smallest y, in the units of the case.
 
         What the engine keeps is its own memory (:class:`StateView`): ``thickness`` on a grid, the layers of a sandpile. What it does not
-        keep is computed: velocities, and on terrain the thickness normal to the bed, where it keeps the volume per plan area (see
-        :attr:`state`).
+        keep is computed, once for each state, into an array that stays as it is: velocities, and on terrain the thickness normal to the
+        bed, for there the engine keeps the volume per plan area (see :attr:`state`).
 
         Raises:
             KeyError: there is no such field; the message names those that there are.
         """
+        if name in self._computed:
+            return self._computed[name]
         array, borrowed = self._native.field(name)
-        if not borrowed:
-            return array
-        return self._view(array, name)
+        if borrowed:
+            return self._view(array, name)
+        self._computed[name] = array
+        return array
 
     def _view(self, array: NDArray[np.float64], name: str) -> StateView:
         view: StateView = array.view(StateView)

@@ -14,8 +14,8 @@ import numpy as np
 _BARE = re.compile(r"[A-Za-z0-9_-]+")
 
 
-def value(given: Any) -> str:
-    """A value as TOML on one line.
+def value(given: Any, place: str = "a case") -> str:
+    """A value as TOML on one line; `place` is its key, for messages.
 
     Raises:
         TypeError: for what TOML has no word for.
@@ -33,10 +33,10 @@ def value(given: Any) -> str:
     if isinstance(given, str):
         return json.dumps(given, ensure_ascii=False).replace("\x7f", "\\u007f")
     if isinstance(given, Mapping):
-        return "{" + ", ".join(f"{key(name)} = {value(inner)}" for name, inner in given.items()) + "}"
+        return "{" + ", ".join(f"{key(name)} = {value(inner, place)}" for name, inner in given.items()) + "}"
     if isinstance(given, (list, tuple, np.ndarray)):
-        return "[" + ", ".join(value(item) for item in given) + "]"
-    raise TypeError(f"a case has no value of type {type(given).__name__}: {given!r}")
+        return "[" + ", ".join(value(item, place) for item in given) + "]"
+    raise TypeError(f"{place}: a case has no value of type {type(given).__name__}: {given!r}")
 
 
 def key(name: str) -> str:
@@ -55,4 +55,4 @@ def _lines(path: str, tables: Mapping[str, Any]) -> Iterator[tuple[str, str]]:
         if isinstance(inner, Mapping) and inner:
             yield from _lines(full, inner)
         else:
-            yield full, value(inner)
+            yield full, value(inner, full)

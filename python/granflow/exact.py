@@ -125,7 +125,7 @@ def slope_dam_break(
     earth_pressure: float = 1.0,
 ) -> Flow:
     """Dam break on a slope that friction does not hold (Mangeney, Heinrich & Roche 2000); friction <= slope."""
-    return Flow(*_each(_native.slope_dam_break, (x, t), [gravity, h0, slope, friction, earth_pressure]))
+    return Flow(*_each(_native.slope_dam_break, (x, t), gravity, h0, slope, friction, earth_pressure))
 
 
 def flat_dam_break(h: ArrayLike, t: ArrayLike, *, mu: float) -> Contour:
@@ -150,7 +150,7 @@ def granular_jump(
 
 def sliding_slab(t: ArrayLike, *, slope: float, friction: float, u0: float, gravity: float = 9.81) -> Motion:
     """A uniform slab slides down a plane from the speed `u0` and stops: friction > slope."""
-    return Motion(*_each(_native.sliding_slab, (t,), [gravity, slope, friction, u0]))
+    return Motion(*_each(_native.sliding_slab, (t,), gravity, slope, friction, u0))
 
 
 def parabolic_cap(
@@ -185,14 +185,14 @@ def similarity_cap(
 ) -> Flow2:
     """The same in two dimensions, at one time: half lengths `length` down and `length_y` across the slope."""
     cap = [height, length, slope, friction, earth_pressure, gravity]
-    return Flow2(*_each(_native.similarity_cap, (x, y), t, cap, [length_y, earth_pressure_y]))
+    return Flow2(*_each(_native.similarity_cap, (x, y), t, cap, length_y, earth_pressure_y))
 
 
 def thacker(
     x: ArrayLike, y: ArrayLike, t: ArrayLike, *, a: float, sigma: float, h0: float, gravity: float = 9.81
 ) -> Lake:
     """A lake that circles in a paraboloid (Thacker 1981): radius `a` and depth `h0` at rest, its centre on a circle `sigma`."""
-    return Lake(*_each(_native.thacker, (x, y, t), [gravity, a, sigma, h0]))
+    return Lake(*_each(_native.thacker, (x, y, t), gravity, a, sigma, h0))
 
 
 def pile_on_rectangle(

@@ -185,3 +185,50 @@ def test_a_case_keeps_what_it_was_given(mountain):
     case = mountain.case(dem=granflow.Raster(bed, 10.0)).set("time", {"steps": 1})
     bed[:] = 0.0
     assert float(granflow.run(case, progress=False).bed.max()) > 600.0
+
+
+def test_a_case_that_is_sent_on_keeps_what_it_was_given(mountain):
+    bed, release = mountain.bed.copy(), mountain.thickness.copy()
+    case = granflow.Case(
+        terrain={"dem": granflow.Raster(bed[::-1], 10.0, first_row="north")},
+        material={"density": 200.0, "friction": {"coulomb": {"mu": 0.35}}},
+        release=[{"raster": release[::-1]}],
+        time={"steps": 1},
+    )
+    before = granflow.run(case, progress=False)
+    bed[:], release[:] = 0.0, 0.0
+    sent = granflow.run(pickle.loads(pickle.dumps(case)), progress=False)
+    assert np.array_equal(sent.bed, before.bed) and np.array_equal(sent.thickness, before.thickness)
+    assert float(before.bed.max()) > 600.0 and float(before.thickness.max()) > 0.0
+
+
+def test_messages_on_what_is_in_memory_have_a_cure_in_python(mountain):
+    undeclared = np.where(mountain.bed > 650.0, -9999.0, mountain.bed)
+    with pytest.raises(ValueError, match=r"in Python: numpy\.where"):
+        granflow.run(mountain.case(dem=granflow.Raster(undeclared, 10.0)), progress=False)
+    with pytest.raises(granflow.CaseError, match=r"Case\.set replaces the whole choice") as caught:
+        mountain.case().set("material.friction.coulom.mu", 0.3)
+    assert "--set" not in caught.value.help
+    array = xr.DataArray(mountain.bed, {"y": mountain.y, "x": mountain.x}, ("y", "x"))
+    with pytest.raises(ValueError, match="sortby"):
+        granflow.Raster.from_dataarray(array.isel(x=slice(None, None, -1)))
+    with pytest.raises(TypeError, match="a Dataset has several variables"):
+        mountain.case(dem=array.to_dataset(name="elevation"))
+
+
+@pytest.mark.parametrize("name, value", [("cell", "5"), ("cell", float("inf")), ("west", float("nan"))])
+def test_a_raster_lies_somewhere(mountain, name, value):
+    with pytest.raises(ValueError, match=f"{name} = .*a number, in metres"):
+        granflow.Raster(mountain.bed, **{"cell": 10.0, name: value})
+
+
+def test_what_is_no_case_is_refused(silo):
+    for given in ("", b"silo.toml", 3):
+        with pytest.raises(TypeError, match="a case is a path"):
+            granflow.Case(given)
+    with pytest.raises(ValueError, match="threads = -1"):
+        granflow.run(silo, threads=-1)
+    sim = granflow.Simulation(silo)
+    sim.until(0.5)
+    with pytest.raises(ValueError, match="time 0.1 is over"):
+        sim.until(0.1)

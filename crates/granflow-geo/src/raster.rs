@@ -27,6 +27,7 @@ use system::Heights;
 use crate::Remark;
 use std::io::Read;
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 
 /// Values that stand for nodata wherever they occur.
 const UNDECLARED: [f64; 4] = [-9999.0, -32768.0, -32767.0, -99999.0];
@@ -57,8 +58,8 @@ pub struct Raster {
 /// A raster as it was read, and what the reader decided: units converted, systems that could not be compared.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Reading {
-    /// Values in metres, or plain numbers.
-    pub raster: Raster,
+    /// Values in metres, or plain numbers; one in memory is shared, not copied, where nothing of it had to be changed.
+    pub raster: Arc<Raster>,
     /// One sentence each, with the name of the file.
     pub notes: Vec<Remark>,
     /// Bytes that reading held at its peak.
@@ -73,7 +74,7 @@ impl Reading {
     pub fn of(path: &Path, crs: Option<&Crs>) -> Result<Reading, RasterError> {
         let (raster, declared, mut notes, bytes) = Self::stored(path, crs)?;
         raster.true_to_scale(path, &mut notes)?;
-        Ok(Reading { bytes, ..Reading::in_metres(path, raster, declared, crs, notes)? })
+        Ok(Reading { bytes, ..Reading::in_metres(path, raster.into(), declared, crs, notes)? })
     }
 
     /// The same of heights on a terrain, whose map has been judged and whose system is `crs`.
@@ -82,7 +83,7 @@ impl Reading {
     /// As [`Raster::read_in`].
     pub fn on_terrain(path: &Path, crs: Option<&Crs>) -> Result<Reading, RasterError> {
         let (raster, declared, notes, bytes) = Self::stored(path, crs)?;
-        Ok(Reading { bytes, ..Reading::in_metres(path, raster, declared, crs, notes)? })
+        Ok(Reading { bytes, ..Reading::in_metres(path, raster.into(), declared, crs, notes)? })
     }
 
     /// The same of numbers on a terrain that are no heights, say coefficients of friction: a unit of heights is not applied.
@@ -92,7 +93,7 @@ impl Reading {
     pub fn of_numbers(path: &Path, crs: Option<&Crs>) -> Result<Reading, RasterError> {
         let (raster, declared, notes, bytes) = Self::stored(path, crs)?;
         let declared = Declared { unit: None, heights: Some(Heights::Unit(1.0)), ..declared };
-        Ok(Reading { bytes, ..Reading::in_metres(path, raster, declared, crs, notes)? })
+        Ok(Reading { bytes, ..Reading::in_metres(path, raster.into(), declared, crs, notes)? })
     }
 
     /// The same of a raster in memory, which is called `name` in messages: it is held to what is asked of one from a file.
@@ -102,15 +103,19 @@ impl Reading {
     /// As [`Raster::read_in`].
     pub fn of_memory(
         name: &Path,
-        mut raster: Raster,
+        mut raster: Arc<Raster>,
         crs: Option<&Crs>,
         heights: bool,
     ) -> Result<Reading, RasterError> {
         let mut notes = Vec::new();
-        raster.crs = agreed(name, raster.crs, crs, &mut notes)?;
-        let infinite_cells = raster.values.iter_mut().filter(|value| value.is_infinite());
-        let count = infinite_cells.map(|value| *value = f64::NAN).count();
+        let system = agreed(name, raster.crs.clone(), crs, &mut notes)?;
+        if system != raster.crs {
+            Arc::make_mut(&mut raster).crs = system;
+        }
+        let count = raster.values.iter().filter(|value| value.is_infinite()).count();
         if count > 0 {
+            let values = Arc::make_mut(&mut raster).values.iter_mut();
+            values.filter(|value| value.is_infinite()).for_each(|value| *value = f64::NAN);
             notes.push(infinite(name, count, ""));
         }
         let bytes = size_of_val(raster.values.as_slice());
@@ -140,17 +145,18 @@ impl Reading {
     /// The raster with what is declared of its values applied, checked.
     fn in_metres(
         path: &Path,
-        raster: Raster,
+        mut raster: Arc<Raster>,
         declared: Declared,
         given: Option<&Crs>,
         mut notes: Vec<Remark>,
     ) -> Result<Reading, RasterError> {
-        let mut raster = raster.checked(path)?;
+        raster.check(path)?;
         let systems = raster.crs.iter().chain(given);
         let heights = declared.heights.or(systems.filter_map(Crs::heights).next());
         let [factor, offset] = Declared { heights, ..declared }.to_metres(path, &mut notes)?;
         if factor != 1.0 || offset != 0.0 {
-            raster.values.iter_mut().for_each(|value| *value = *value * factor + offset);
+            let values = Arc::make_mut(&mut raster).values.iter_mut();
+            values.for_each(|value| *value = *value * factor + offset);
         }
         Ok(Reading { raster, notes, bytes: 0 })
     }
@@ -174,7 +180,7 @@ impl Raster {
     /// # Errors
     /// As [`Raster::read`]; also [`RasterError::CrsMismatch`] when the file's own CRS contradicts the given one.
     pub fn read_in(path: &Path, crs: Option<&Crs>) -> Result<Raster, RasterError> {
-        Reading::of(path, crs).map(|reading| reading.raster)
+        Reading::of(path, crs).map(|reading| Arc::unwrap_or_clone(reading.raster))
     }
 
     /// As [`Raster::read_in`], from the bytes of a file that is called `name` in messages.
@@ -192,7 +198,8 @@ impl Raster {
             ascii::from_bytes(name, &bytes, (None, Declared::default()), crs, &mut notes)?
         };
         raster.true_to_scale(name, &mut notes)?;
-        Reading::in_metres(name, raster, declared, crs, notes).map(|reading| reading.raster)
+        let reading = Reading::in_metres(name, raster.into(), declared, crs, notes)?;
+        Ok(Arc::unwrap_or_clone(reading.raster))
     }
 
     /// A raster of the same cells and CRS with other values, or none.
@@ -294,9 +301,9 @@ impl Raster {
     }
 
     /// The demands on every raster: metres, and at least one value.
-    fn checked(self, path: &Path) -> Result<Raster, RasterError> {
+    fn check(&self, path: &Path) -> Result<(), RasterError> {
         if self.geographic() {
-            return Err(RasterError::geographic(path, &self));
+            return Err(RasterError::geographic(path, self));
         }
         if let Some(metres) =
             self.crs.as_ref().and_then(Crs::metres_per_unit).filter(|m| (m - 1.0).abs() > 1e-9)
@@ -310,7 +317,7 @@ impl Raster {
             let found = if high > 1e30 { high } else { low };
             return Err(RasterError::Undeclared { path: path.into(), found });
         }
-        Ok(self)
+        Ok(())
     }
 }
 
@@ -377,7 +384,7 @@ pub(crate) mod tests {
     }
 
     fn refused(raster: Raster) -> String {
-        raster.checked(Path::new("dem.tif")).unwrap_err().to_string()
+        raster.check(Path::new("dem.tif")).unwrap_err().to_string()
     }
 
     #[test]
@@ -389,7 +396,7 @@ pub(crate) mod tests {
         let south = Raster { south: -33.0, west: -70.5, ..degrees.clone() };
         assert!(refused(south).contains("EPSG:32719"));
         let flume = Raster { values: sampled(20, 20, |x, _| 1e-4 * x).values, ..degrees };
-        assert!(flume.clone().checked(Path::new("flume.asc")).is_ok());
+        assert!(flume.check(Path::new("flume.asc")).is_ok());
         let crs = Some(Crs { epsg: Some(4326), wkt: None });
         assert!(refused(Raster { crs, ..flume }).contains("gdalwarp"));
     }
@@ -398,12 +405,12 @@ pub(crate) mod tests {
     fn a_raster_in_memory_is_held_to_the_same() {
         let name = Path::new("<terrain.dem>");
         let tilted = sampled(4, 3, |x, _| if x < 1.0 { f64::INFINITY } else { x });
-        let read = Reading::of_memory(name, tilted.clone(), None, true).unwrap();
+        let read = Reading::of_memory(name, tilted.clone().into(), None, true).unwrap();
         assert!(read.raster.values[0].is_nan() && read.raster.values[1] == 1.5);
         assert!(read.notes[0].text().contains("3 cells are infinite"), "{:?}", read.notes);
         let [a, b] = [31287, 32632].map(|epsg| Crs { epsg: Some(epsg), wkt: None });
         let other = Raster { crs: Some(a), ..tilted };
-        let message = Reading::of_memory(name, other, Some(&b), true).unwrap_err().to_string();
+        let message = Reading::of_memory(name, other.into(), Some(&b), true).unwrap_err().to_string();
         assert!(message.contains("<terrain.dem>") && message.contains("EPSG:31287"), "{message}");
     }
 

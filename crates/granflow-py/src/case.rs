@@ -3,8 +3,9 @@
 use crate::error::{of_case, of_start};
 use granflow::raster::{Crs, Raster};
 use granflow::{Checked, Inputs};
-use numpy::{PyReadonlyArray2, PyUntypedArrayMethods};
-use pyo3::exceptions::PyValueError;
+use numpy::ndarray::ArrayView2;
+use numpy::{PyArray2, PyArrayMethods, PyReadonlyArray2, PyUntypedArrayMethods};
+use pyo3::exceptions::{PyKeyError, PyValueError};
 use pyo3::prelude::*;
 use std::path::PathBuf;
 
@@ -46,6 +47,11 @@ impl Case {
     /// The case, not checked, and what it may name in memory.
     pub fn parts(&self, py: Python<'_>) -> PyResult<(granflow::Case, Inputs)> {
         Ok((self.read(py)?, self.inputs.clone()))
+    }
+
+    /// What it may name in memory.
+    pub fn inputs(&self) -> &Inputs {
+        &self.inputs
     }
 
     /// The case, checked.
@@ -108,6 +114,19 @@ impl Case {
         let values = values.as_array().iter().copied().collect();
         let raster = Raster { columns, rows, west, south, cell, values, crs };
         Ok(Case { inputs: self.inputs.clone().with_raster(name, raster), ..self.clone() })
+    }
+
+    /// The values of a raster in memory, without a copy: shape (rows, columns), row 0 in the south, not to be written.
+    fn raster<'py>(slf: Bound<'py, Self>, name: &str) -> PyResult<Bound<'py, PyArray2<f64>>> {
+        let Some(Raster { columns, rows, values, .. }) = slf.get().inputs.raster(name) else {
+            return Err(PyKeyError::new_err(name.to_owned()));
+        };
+        let cells = ArrayView2::from_shape((*rows, *columns), values)
+            .map_err(|error| PyValueError::new_err(error.to_string()))?;
+        // SAFETY: the array keeps the case alive, which keeps the raster and never changes it.
+        let array = unsafe { PyArray2::borrow_from_array(&cells, slf.clone().into_any()) };
+        array.readwrite().make_nonwriteable();
+        Ok(array)
     }
 
     /// Says what is wrong with it, if anything is.

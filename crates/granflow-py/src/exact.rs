@@ -1,6 +1,6 @@
 //! Exact solutions, place by place; the package gives them arrays of one shape.
 
-use granflow::hadeler_kuttler::exact as piles;
+use granflow::hadeler_kuttler::{Pile, exact as piles};
 use granflow::savage_hutter::exact::{
     CapRelease, ExactError, FlatDamBreak, Flow1, Flow2, GranularJump, ParabolicCap, Riemann, SimilarityCap,
     SlidingSlab, SlopeDamBreak, ThackerParaboloid,
@@ -31,8 +31,6 @@ fn each<'py, const IN: usize, const OUT: usize>(
     Ok(values.into_iter().map(|all| PyArray1::from_vec(py, all)).collect())
 }
 
-type Places<'py> = PyReadonlyArray1<'py, f64>;
-
 fn one(Flow1 { h, u }: Flow1) -> [f64; 2] {
     [h, u]
 }
@@ -41,145 +39,75 @@ fn two(Flow2 { h, u, v }: Flow2) -> [f64; 3] {
     [h, u, v]
 }
 
+fn lake(Flow2 { h, u, v }: Flow2, bed: f64) -> [f64; 4] {
+    [h, u, v, bed]
+}
+
+fn layers(pile: Pile<f64>) -> [f64; 2] {
+    [pile.u, pile.v]
+}
+
 fn flow([h, u]: [f64; 2]) -> Flow1 {
     Flow1 { h, u }
-}
-
-#[pyfunction]
-pub fn riemann<'py>(
-    py: Python<'py>,
-    x: Places<'py>,
-    t: Places<'py>,
-    beta: f64,
-    left: [f64; 2],
-    right: [f64; 2],
-) -> PyResult<Arrays<'py>> {
-    let exact = Riemann::new(beta, flow(left), flow(right)).map_err(refused)?;
-    each(py, [&x, &t], |[x, t]| one(exact.flow(x, t)))
-}
-
-#[pyfunction]
-pub fn slope_dam_break<'py>(
-    py: Python<'py>,
-    x: Places<'py>,
-    t: Places<'py>,
-    numbers: [f64; 5],
-) -> PyResult<Arrays<'py>> {
-    let [gravity, h0, slope, friction, earth_pressure] = numbers;
-    let exact = SlopeDamBreak::new(gravity, h0, slope, friction, earth_pressure).map_err(refused)?;
-    each(py, [&x, &t], |[x, t]| one(exact.flow(x, t)))
-}
-
-#[pyfunction]
-pub fn flat_dam_break<'py>(
-    py: Python<'py>,
-    h: Places<'py>,
-    t: Places<'py>,
-    mu: f64,
-) -> PyResult<Arrays<'py>> {
-    let exact = FlatDamBreak::new(mu).map_err(refused)?;
-    each(py, [&h, &t], |[h, t]| exact.contour(h, t).map_or([f64::NAN; 2], |contour| [contour.x, contour.u]))
-}
-
-#[pyfunction]
-pub fn flat_dam_break_front<'py>(py: Python<'py>, t: Places<'py>, mu: f64) -> PyResult<Arrays<'py>> {
-    let exact = FlatDamBreak::new(mu).map_err(refused)?;
-    each(py, [&t], |[t]| [exact.front(t)])
-}
-
-#[pyfunction]
-pub fn granular_jump<'py>(
-    py: Python<'py>,
-    x: Places<'py>,
-    t: Places<'py>,
-    beta: f64,
-    minus: [f64; 2],
-    h_plus: f64,
-) -> PyResult<Arrays<'py>> {
-    let exact = GranularJump::new(beta, flow(minus), h_plus).map_err(refused)?;
-    each(py, [&x, &t], |[x, t]| one(exact.flow(x, t)))
-}
-
-#[pyfunction]
-pub fn sliding_slab<'py>(py: Python<'py>, t: Places<'py>, numbers: [f64; 4]) -> PyResult<Arrays<'py>> {
-    let [gravity, slope, friction, u0] = numbers;
-    let exact = SlidingSlab::new(gravity, slope, friction, u0).map_err(refused)?;
-    each(py, [&t], |[t]| [exact.displacement(t), exact.velocity(t)])
 }
 
 fn release([height, length, slope, friction, earth_pressure, gravity]: [f64; 6]) -> CapRelease {
     CapRelease { height, length, slope, friction, earth_pressure, gravity }
 }
 
-#[pyfunction]
-pub fn parabolic_cap<'py>(
-    py: Python<'py>,
-    x: Places<'py>,
-    t: Places<'py>,
-    cap: [f64; 6],
-) -> PyResult<Arrays<'py>> {
-    let exact = ParabolicCap::new(release(cap)).map_err(refused)?;
-    each(py, [&x, &t], |[x, t]| one(exact.flow(x, t)))
+/// Functions of Python, a line each: `name(places; parameters): what is made of the parameters once => its values in a place`.
+macro_rules! functions {
+    ($($name:ident($($place:ident),+; $($given:ident: $kind:ty),+): $made:expr => |$exact:pat_param| $values:expr;)+) => {
+        $(
+            #[pyfunction]
+            pub fn $name<'py>(
+                py: Python<'py>,
+                $($place: PyReadonlyArray1<'py, f64>,)+
+                $($given: $kind),+
+            ) -> PyResult<Arrays<'py>> {
+                let $exact = $made.map_err(refused)?;
+                each(py, [$(&$place),+], |[$($place),+]| $values)
+            }
+        )+
+    };
 }
 
-/// At one time: the stretches are integrated once.
-#[pyfunction]
-pub fn similarity_cap<'py>(
-    py: Python<'py>,
-    x: Places<'py>,
-    y: Places<'py>,
-    t: f64,
-    cap: [f64; 6],
-    across: [f64; 2],
-) -> PyResult<Arrays<'py>> {
-    let [length, earth_pressure] = across;
-    let exact = SimilarityCap::new(release(cap), length, earth_pressure).map_err(refused)?.at(t);
-    each(py, [&x, &y], |[x, y]| two(exact.flow(x, y)))
-}
+functions! {
+    riemann(x, t; beta: f64, left: [f64; 2], right: [f64; 2]):
+        Riemann::new(beta, flow(left), flow(right)) => |exact| one(exact.flow(x, t));
 
-#[pyfunction]
-pub fn thacker<'py>(
-    py: Python<'py>,
-    x: Places<'py>,
-    y: Places<'py>,
-    t: Places<'py>,
-    numbers: [f64; 4],
-) -> PyResult<Arrays<'py>> {
-    let [gravity, a, sigma, h0] = numbers;
-    let exact = ThackerParaboloid::new(gravity, a, sigma, h0).map_err(refused)?;
-    each(py, [&x, &y, &t], |[x, y, t]| {
-        let [h, u, v] = two(exact.flow(x, y, t));
-        [h, u, v, exact.bed(x, y)]
-    })
-}
+    slope_dam_break(x, t; gravity: f64, h0: f64, slope: f64, friction: f64, earth_pressure: f64):
+        SlopeDamBreak::new(gravity, h0, slope, friction, earth_pressure) => |exact| one(exact.flow(x, t));
 
-#[pyfunction]
-pub fn pile_on_rectangle<'py>(
-    py: Python<'py>,
-    x: Places<'py>,
-    y: Places<'py>,
-    sides: [f64; 2],
-    open: [[bool; 2]; 2],
-    source: f64,
-) -> PyResult<Arrays<'py>> {
-    each(py, [&x, &y], |place| {
-        piles::rectangle(sides, open, source, place).map_or([f64::NAN; 2], |pile| [pile.u, pile.v])
-    })
-}
+    flat_dam_break(h, t; mu: f64):
+        FlatDamBreak::new(mu) => |exact| exact.contour(h, t).map_or([f64::NAN; 2], |at| [at.x, at.u]);
 
-#[pyfunction]
-pub fn pile_on_disc<'py>(
-    py: Python<'py>,
-    r: Places<'py>,
-    radius: f64,
-    source: f64,
-    hole: Option<f64>,
-) -> PyResult<Arrays<'py>> {
-    each(py, [&r], |[r]| {
-        let pile = match hole {
+    flat_dam_break_front(t; mu: f64):
+        FlatDamBreak::new(mu) => |exact| [exact.front(t)];
+
+    granular_jump(x, t; beta: f64, minus: [f64; 2], h_plus: f64):
+        GranularJump::new(beta, flow(minus), h_plus) => |exact| one(exact.flow(x, t));
+
+    sliding_slab(t; gravity: f64, slope: f64, friction: f64, u0: f64):
+        SlidingSlab::new(gravity, slope, friction, u0) => |exact| [exact.displacement(t), exact.velocity(t)];
+
+    parabolic_cap(x, t; cap: [f64; 6]):
+        ParabolicCap::new(release(cap)) => |exact| one(exact.flow(x, t));
+
+    // At one time: the stretches are integrated once.
+    similarity_cap(x, y; t: f64, cap: [f64; 6], length: f64, earth_pressure: f64):
+        SimilarityCap::new(release(cap), length, earth_pressure).map(|exact| exact.at(t))
+            => |exact| two(exact.flow(x, y));
+
+    thacker(x, y, t; gravity: f64, a: f64, sigma: f64, h0: f64):
+        ThackerParaboloid::new(gravity, a, sigma, h0) => |exact| lake(exact.flow(x, y, t), exact.bed(x, y));
+
+    pile_on_rectangle(x, y; sides: [f64; 2], open: [[bool; 2]; 2], source: f64):
+        Ok(()) => |()| piles::rectangle(sides, open, source, [x, y]).map_or([f64::NAN; 2], layers);
+
+    pile_on_disc(r; radius: f64, source: f64, hole: Option<f64>):
+        Ok(()) => |()| layers(match hole {
             None => piles::disc(radius, source, r),
             Some(hole) => piles::funnel(radius, hole, source, r),
-        };
-        [pile.u, pile.v]
-    })
+        });
 }

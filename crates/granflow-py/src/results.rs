@@ -1,8 +1,11 @@
 //! What a run left, as arrays and plain values of Python. A series of the run becomes an array without a copy.
 
+use crate::error::of_output;
 use granflow::output::Precision;
 use granflow::output::netcdf::{Dataset, Values, Variable};
-use granflow::sinks::{Kept, Numbers};
+use granflow::output::summary::Summary;
+use granflow::results::{Finished, Numbers};
+use granflow::sinks::Kept;
 use numpy::{Element, PyArray1, PyArrayMethods, PyUntypedArrayMethods};
 use pyo3::exceptions::{PyRuntimeError, PyValueError};
 use pyo3::prelude::*;
@@ -28,10 +31,29 @@ pub fn results(py: Python<'_>, mut kept: Kept) -> PyResult<Bound<'_, PyDict>> {
             kept.dataset("granflow.run").map_err(|error| PyValueError::new_err(error.to_string()))?;
         described_all(py, &dataset)?
     };
-    let summary = serde_json::to_string_pretty(&kept.summary);
     filled(py, &results, heads, &holes, |series| taken(&mut kept, series))?;
-    results.set_item("summary", summary.map_err(|error| PyRuntimeError::new_err(error.to_string()))?)?;
+    summed_up(&results, &kept.summary)?;
     Ok(results)
+}
+
+/// What a run left in a folder: as [`results`].
+pub fn of_files<'py>(py: Python<'py>, finished: &Finished) -> PyResult<Bound<'py, PyDict>> {
+    let dataset = finished.dataset().map_err(|error| of_output(&error))?;
+    let (results, heads, holes) = described_all(py, &dataset)?;
+    let missing = |series: &str| PyRuntimeError::new_err(format!("the run kept no series {series}"));
+    let stored = |series: &str| {
+        let numbers = finished.series(series).map_err(|error| of_output(&error))?;
+        numbers.ok_or_else(|| missing(series))
+    };
+    filled(py, &results, heads, &holes, stored)?;
+    summed_up(&results, &finished.summary)?;
+    Ok(results)
+}
+
+/// Puts `summary` among the results, as JSON.
+fn summed_up(results: &Bound<'_, PyDict>, summary: &Summary) -> PyResult<()> {
+    let text = serde_json::to_string_pretty(summary);
+    results.set_item("summary", text.map_err(|error| PyRuntimeError::new_err(error.to_string()))?)
 }
 
 /// `coords` and `variables` as lists of (name, dimensions, array, attributes), `attrs`, the attributes of `crs` where there is one.

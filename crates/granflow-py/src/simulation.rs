@@ -1,21 +1,25 @@
 //! A run that Python holds: stepped, looked into, saved.
 
 use crate::case::Case;
-use crate::error::{of_computation, of_run, of_start};
+use crate::error::{of_computation, of_output, of_restore, of_run, of_start, restoring};
 use crate::interrupt::PAUSE;
+use granflow::output::checkpoint::Origin;
 use granflow::run::{Ends, Failure, FrameClock, Run, Saved, reached, watch_for};
-use granflow::session::threads;
+use granflow::session::{Change, origin, restore, save, threads};
 use numpy::ndarray::{ArrayView, IxDyn, ShapeBuilder};
 use numpy::{PyArray1, PyArrayDyn, PyArrayMethods};
 use pyo3::exceptions::{PyIndexError, PyKeyError, PyValueError};
 use pyo3::prelude::*;
 use rayon::ThreadPool;
+use std::path::PathBuf;
 use std::time::Instant;
 
 /// A run under way.
 #[pyclass(module = "granflow._native")]
 pub struct Simulation {
     run: Box<dyn Run>,
+    /// What it was made of.
+    origin: Origin,
     ends: Ends,
     pool: ThreadPool,
     /// The last frame was the end of the run.
@@ -24,7 +28,22 @@ pub struct Simulation {
 
 /// A state to go on from.
 #[pyclass(module = "granflow._native", frozen)]
-pub struct Checkpoint(Saved<'static>);
+pub struct Checkpoint {
+    state: Saved<'static>,
+    /// What the run was made of.
+    origin: Origin,
+}
+
+impl Checkpoint {
+    /// Has a run go on from it; returns what differs in the case.
+    fn restored(&self, run: &mut dyn Run, now: &Origin) -> PyResult<Vec<Change>> {
+        let refused = |problem: String| PyValueError::new_err(restoring(&problem));
+        let changes = self.origin.changes(now).map_err(refused)?;
+        run.restore(self.state.clone())
+            .map_err(|problem| refused(format!("another checkpoint: {problem}")))?;
+        Ok(changes)
+    }
+}
 
 /// How far a piece of work has come.
 enum Came {
@@ -89,22 +108,33 @@ fn lent<'py>(
 
 #[pymethods]
 impl Simulation {
-    /// The run of a case on so many threads (0: all cores), from its start or from a checkpoint.
-    #[new]
-    #[pyo3(signature = (case, number, checkpoint))]
-    fn new(py: Python<'_>, case: &Case, number: usize, checkpoint: Option<&Checkpoint>) -> PyResult<Self> {
-        let checked = case.checked(py)?;
+    /// The run of a case on so many threads (0: all cores), from its start, from a checkpoint or from one in a file; and what differs in
+    /// the case since then.
+    #[staticmethod]
+    #[pyo3(signature = (case, number, checkpoint, file))]
+    fn begin(
+        py: Python<'_>,
+        case: &Case,
+        number: usize,
+        checkpoint: Option<&Checkpoint>,
+        file: Option<PathBuf>,
+    ) -> PyResult<(Self, Vec<String>)> {
+        let (checked, inputs) = (case.checked(py)?, case.inputs());
         let ends = checked.plan().ends;
+        let origin = py.detach(|| origin(checked.plan(), inputs));
+        let origin = origin.map_err(|error| of_output(&error))?;
         let pool = threads(number).map_err(|error| of_run(py, &error))?;
         let started = py.detach(|| pool.install(|| checked.start()));
         let mut run = started.map_err(|error| of_start(py, &error))?;
-        if let Some(Checkpoint(saved)) = checkpoint {
-            let restored = run.restore(saved.clone());
-            restored.map_err(|problem| PyValueError::new_err(format!("another checkpoint: {problem}")))?;
-        }
+        let changes = match (checkpoint, file) {
+            (Some(saved), _) => saved.restored(&mut *run, &origin)?,
+            (None, Some(file)) => restore(&mut *run, &origin, &file).map_err(|error| of_restore(&error))?,
+            (None, None) => Vec::new(),
+        };
         watch_for(&mut *run, &ends);
         py.detach(|| pool.install(|| run.bring()));
-        Ok(Simulation { run, ends, pool, ended: false })
+        let changes = changes.iter().map(ToString::to_string).collect();
+        Ok((Simulation { run, origin, ends, pool, ended: false }, changes))
     }
 
     /// So many steps; fewer where nothing can move any more.
@@ -225,7 +255,13 @@ impl Simulation {
     /// The state to go on from, copied.
     fn checkpoint(&mut self) -> Checkpoint {
         self.run.stepper_mut().show_end();
-        Checkpoint(self.run.save().into_owned())
+        Checkpoint { state: self.run.save().into_owned(), origin: self.origin.clone() }
+    }
+
+    /// The state to go on from, into a file.
+    fn checkpoint_to(&mut self, py: Python<'_>, path: PathBuf) -> PyResult<()> {
+        let Simulation { run, origin, .. } = self;
+        py.detach(|| save(&mut **run, origin, &path)).map_err(|error| of_output(&error))
     }
 
     /// Names of the fields.

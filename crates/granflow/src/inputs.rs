@@ -22,11 +22,11 @@ pub struct Inputs {
 }
 
 /// What is kept under the last part of a path.
-fn kept<'a, T>(all: &'a BTreeMap<String, Arc<T>>, path: &Path) -> Option<&'a T>
+fn kept<'a, T>(all: &'a BTreeMap<String, Arc<T>>, path: &Path) -> Option<&'a Arc<T>>
 where
     T: ?Sized,
 {
-    all.get(path.file_name()?.to_str()?).map(|one| &**one)
+    all.get(path.file_name()?.to_str()?)
 }
 
 impl Inputs {
@@ -45,6 +45,13 @@ impl Inputs {
         self
     }
 
+    /// A raster by its name.
+    #[cfg(feature = "geo")]
+    #[must_use]
+    pub fn raster(&self, name: &str) -> Option<&Raster> {
+        self.rasters.get(name).map(|raster| &**raster)
+    }
+
     /// What tells a file or raster in memory from another: its length in bytes and their checksum.
     #[cfg(feature = "files")]
     pub(crate) fn fingerprint(&self, path: &Path) -> Option<(u64, u32)> {
@@ -56,7 +63,7 @@ impl Inputs {
 
     #[cfg(all(feature = "files", feature = "geo"))]
     fn fingerprint_of_raster(&self, path: &Path) -> Option<(u64, u32)> {
-        let Raster { columns, rows, west, south, cell, values, crs } = kept(&self.rasters, path)?;
+        let Raster { columns, rows, west, south, cell, values, crs } = &**kept(&self.rasters, path)?;
         let mut sum = crc32fast::Hasher::new();
         sum.update(format!("{columns} {rows} {west:?} {south:?} {cell:?} {crs:?}").as_bytes());
         values.iter().for_each(|value| sum.update(&value.to_le_bytes()));
@@ -70,7 +77,7 @@ impl Inputs {
 
     /// The content of a file in memory.
     pub(crate) fn file(&self, path: &Path) -> Option<&[u8]> {
-        kept(&self.files, path)
+        kept(&self.files, path).map(|bytes| &**bytes)
     }
 
     pub(crate) fn holds(&self, path: &Path) -> bool {

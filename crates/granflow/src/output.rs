@@ -102,7 +102,7 @@ impl Error {
         Self::Damaged { path: path.to_owned(), problem: problem.into() }
     }
 
-    fn mismatch(path: &Path, problem: impl Into<String>) -> Self {
+    pub(crate) fn mismatch(path: &Path, problem: impl Into<String>) -> Self {
         Self::Mismatch { path: path.to_owned(), problem: problem.into() }
     }
 

@@ -7,6 +7,7 @@ mod files;
 mod format;
 pub(crate) mod formats;
 pub(crate) mod numbers;
+mod series;
 #[cfg(feature = "figures")]
 mod story;
 mod watched;
@@ -16,6 +17,7 @@ pub(crate) use contents::Contents;
 pub use dataset::{About, dataset};
 pub use error::FilesError;
 pub use files::check_kinds;
+pub use series::Numbers;
 #[cfg(feature = "figures")]
 pub use story::Story;
 
@@ -24,7 +26,7 @@ use crate::output::folder::Folder;
 use crate::output::frames::Frames;
 use crate::output::ledger::Entry;
 use crate::output::lines::Table;
-use crate::output::netcdf::Values;
+use crate::output::netcdf::{Dataset, Values};
 use crate::output::summary::Summary;
 use granflow_case::FileKind;
 use std::path::{Path, PathBuf};
@@ -75,9 +77,18 @@ impl Finished {
     /// # Errors
     /// [`output::Error`] naming the file.
     pub fn write_result(&self) -> Result<(), output::Error> {
-        let mut frames = self.frames.again()?;
-        let stored: Vec<String> = frames.fields().iter().map(|field| field.name.clone()).collect();
-        let series = stored.iter().map(|name| (name.as_str(), Values::Stored(name.clone()))).collect();
+        self.dataset()?.write(&self.result(), Some(&mut self.frames.again()?))
+    }
+
+    /// All that `result.nc` says. The numbers of its series are on the disk, where [`Values::Stored`] names them; [`Finished::series`]
+    /// reads them.
+    ///
+    /// # Errors
+    /// [`output::Error`] naming a file that cannot be read, or that does not fit the others.
+    pub fn dataset(&self) -> Result<Dataset<'_>, output::Error> {
+        let frames = &self.frames;
+        let names = frames.fields().iter().map(|field| field.name.as_str());
+        let series = names.map(|name| (name, Values::Stored(name.to_owned()))).collect();
         let table = |path: &Option<PathBuf>| path.as_deref().map(Table::read).transpose();
         let tables = [table(&self.series[0])?, table(&self.series[1])?];
         let contents = Contents {
@@ -90,11 +101,24 @@ impl Finished {
             summary: &self.summary,
             case: [&self.case, &self.case_text],
         };
-        let path = self.result();
-        let result = contents
+        contents
             .dataset(self.history.join("\n"))
-            .map_err(|problem| output::Error::invalid(&path, problem))?;
-        result.write(&path, Some(&mut frames))
+            .map_err(|problem| output::Error::invalid(&self.result(), problem))
+    }
+
+    /// A series at all instants, the first one first; nothing where there is none of this name.
+    ///
+    /// # Errors
+    /// [`output::Error`] if the frames cannot be read.
+    pub fn series(&self, name: &str) -> Result<Option<Numbers>, output::Error> {
+        let Some(field) = self.frames.position(name) else { return Ok(None) };
+        let mut frames = self.frames.again()?;
+        let mut numbers = Numbers::none(frames.precision());
+        for frame in 0..frames.times().len() {
+            let values = frames.read(frame, field)?;
+            numbers.extend(values.len(), |from, part| part.copy_from_slice(&values[from..][..part.len()]));
+        }
+        Ok(Some(numbers))
     }
 
     /// List the files that the run left ([`Folder::list`]) and remove the frames, of which `result.nc` has a second copy:

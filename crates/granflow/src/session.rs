@@ -7,12 +7,13 @@ use crate::output::folder::Folder;
 use crate::output::inputs::{Input, inputs};
 use crate::results::{FilesError, Finished, check_kinds};
 use crate::run::{DriveError, Run, drive};
-use crate::sinks::{BeginError, Callback, Files, Keep, Kept, Sink, Stop};
+use crate::sinks::{BeginError, Callback, Files, Keep, Kept, Sink, Stop, checkpoints};
 use crate::watch::Watch;
 use crate::{Checked, StartError};
+pub use granflow_case::Change;
 use granflow_case::RunPlan;
 use rayon::ThreadPool;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::sync::atomic::AtomicBool;
 use std::time::Instant;
 
@@ -21,7 +22,7 @@ const MAX_THREADS: usize = 1024;
 
 /// What is not in the case: where, with how many threads, whether to go on.
 #[derive(Debug, Clone)]
-pub struct Options {
+pub struct Options<Hear = fn(&str)> {
     /// Folder of the results.
     pub directory: PathBuf,
     /// Threads; 0 takes all cores.
@@ -31,7 +32,7 @@ pub struct Options {
     /// The command, for the history of the result.
     pub command: String,
     /// Hears, before the first step, what happened to an earlier run's files.
-    pub notice: fn(&str),
+    pub notice: Hear,
 }
 
 /// Why a run did not end as its case says.
@@ -92,7 +93,7 @@ impl Checked {
     /// [`RunError`]; what was complete before stays complete.
     pub fn compute(
         self,
-        options: &Options,
+        options: &Options<impl Fn(&str) + Sync>,
         stop: &AtomicBool,
         report: &mut (dyn FnMut(&dyn Run) + Send),
     ) -> Result<Finished, RunError> {
@@ -129,7 +130,7 @@ impl Checked {
 
     fn into_files(
         self,
-        Options { directory, resume, command, notice, .. }: &Options,
+        Options { directory, resume, command, notice, .. }: &Options<impl Fn(&str) + Sync>,
         begun: Instant,
         stop: &AtomicBool,
         report: &mut (dyn FnMut(&dyn Run) + Send),
@@ -152,11 +153,11 @@ impl Checked {
             }
         };
         let begin = if *resume { Files::resume } else { Files::begin };
-        if !resume && let Some(aside) = folder.clear()? {
-            notice(&format!("the files of an earlier run are now in {}", aside.display()));
+        if !resume && let Some(moved) = folder.clear()? {
+            notice(&moved.to_string());
         }
         let mut files = begin(folder, &plan, origin, command, watch, &mut *run)?.since(begun);
-        files.notices().for_each(notice);
+        files.notices().for_each(|text| notice(text));
         let mut report = Callback(report);
         let sinks: &mut [&mut dyn Sink] = &mut [&mut Stop(stop), &mut report, &mut files];
         match drive(&mut *run, &plan.ends, sinks) {
@@ -173,6 +174,26 @@ impl Checked {
             }
         }
     }
+}
+
+/// Write the state of a run to a file, whole or not at all: [`restore`] goes on from it with the same bits.
+///
+/// # Errors
+/// [`output::Error`] if the disk refuses; an older file then remains.
+pub fn save(run: &mut dyn Run, origin: &Origin, path: &Path) -> Result<(), output::Error> {
+    run.stepper_mut().show_end();
+    checkpoints::write(run, origin, path)
+}
+
+/// Go on from a state that [`save`] wrote, or from the `checkpoint/state.bin` of a run in a folder; returns what differs between the
+/// case of then and the one of `origin`, such as the friction.
+///
+/// # Errors
+/// [`BeginError`] naming the file: it cannot be read, it is damaged, or it is of another case, other inputs or another version.
+pub fn restore(run: &mut dyn Run, origin: &Origin, path: &Path) -> Result<Vec<Change>, BeginError> {
+    let (saved, changes) = checkpoints::take(path, origin, run)?;
+    run.restore(saved).map_err(|problem| output::Error::mismatch(path, problem))?;
+    Ok(changes)
 }
 
 /// What the run of a case is made of: the case, and what is in the files it names, on the disk or in memory.

@@ -13,8 +13,10 @@ mod series;
 pub use crate::run::{Sink, SinkError};
 pub use callback::{Callback, Stop};
 #[cfg(feature = "files")]
+pub(crate) use files::checkpoints;
+#[cfg(feature = "files")]
 pub use files::{BeginError, Files};
 #[cfg(feature = "files")]
-pub use keep::{Keep, Kept, Numbers};
+pub use keep::{Keep, Kept};
 pub use memory::{Memory, Recording};
 pub use schedule::Schedule;

@@ -177,6 +177,21 @@ fn parts_as_files_are_one_ensemble_or_refused_with_the_reason() {
 }
 
 #[test]
+fn an_ensemble_does_not_go_on_from_a_run() {
+    let folder = tempfile::tempdir().unwrap();
+    let ensemble = of(SLAB);
+    std::fs::write(folder.path().join("summary.json"), "of a run").unwrap();
+    let resume = Options { resume: true, ..options(folder.path(), 0..2) };
+    let refused = ensemble.into_folder(&resume, &never(), &mut |_| ()).unwrap_err().to_string();
+    assert!(
+        refused.contains("the files of a run") && folder.path().join("summary.json").exists(),
+        "{refused}"
+    );
+    ensemble.into_folder(&options(folder.path(), 0..2), &never(), &mut |_| ()).unwrap();
+    assert!(folder.path().join("previous/summary.json").exists());
+}
+
+#[test]
 fn an_interrupted_ensemble_goes_on_and_ends_with_the_same_bits() {
     let short = SLAB.replace("members = 200", "members = 20");
     let ensemble = of(&short);

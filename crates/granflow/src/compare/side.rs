@@ -238,9 +238,9 @@ fn raster(path: PathBuf, notes: &mut Vec<String>) -> Result<Side, CompareError> 
             below.len()
         ));
     }
-    let grid = CellGrid::from(&raster);
-    let crs = raster.crs;
-    let values = raster.values.into_iter().map(|h| if h < 0.0 { 0.0 } else { h }).collect();
+    let grid = CellGrid::from(&*raster);
+    let crs = raster.crs.clone();
+    let values = raster.values.iter().map(|h| if *h < 0.0 { 0.0 } else { *h }).collect();
     Ok(Side { path, area: unmarked(grid), crs, volume: None, kind: Kind::Raster(grid, values) })
 }
 

@@ -33,7 +33,12 @@ impl Ensemble {
             "m s-1" => "m/s",
             other => other,
         };
-        let (label, unit) = (map.name.replace('_', " "), unit.to_owned());
+        let label = match map.measure {
+            Measure::Exceedance(_) => "share of the members".to_owned(),
+            Measure::Members => "members".to_owned(),
+            _ => map.name.replace('_', " "),
+        };
+        let unit = unit.to_owned();
         Style { label, unit, colours, above: LEAST_SHOWN * high, range: [0.0, high] }
     }
 

@@ -99,11 +99,15 @@ impl Ensemble {
         match found {
             Some(Ok(reduced)) => return Ok(reduced),
             Some(Err(error)) if options.resume => return Err(error),
+            None if options.resume && folder.is_taken() => {
+                let problem = "it has the files of a run, and no ensemble to go on with; name another folder with --out, or leave --resume out: what is here then goes into previous/";
+                return Err(Error::mismatch(folder.path(), problem).into());
+            }
             Some(Err(error)) => (options.notice)(&format!("nothing of the folder is taken: {error}")),
             None => {}
         }
-        if let Some(aside) = folder.clear()? {
-            (options.notice)(&format!("the files of an earlier run are now in {}", aside.display()));
+        if let Some(moved) = folder.clear()? {
+            (options.notice)(&moved.to_string());
         }
         Ok(self.empty())
     }
@@ -178,8 +182,8 @@ impl Ensemble {
             return Err(EnsembleError::Parts(lacking(&missing)));
         }
         let folder = Folder::take(&options.directory)?;
-        if let Some(aside) = folder.clear()? {
-            (options.notice)(&format!("the files of an earlier run are now in {}", aside.display()));
+        if let Some(moved) = folder.clear()? {
+            (options.notice)(&moved.to_string());
         }
         self.write(&reduced, &folder.path().join(KEPT))?;
         let files = self.write_files(&reduced, folder.path(), &options.command)?;

@@ -42,9 +42,10 @@ impl Ensemble {
     pub fn maps(&self, reduced: &Reduced) -> Vec<Map> {
         let count = reduced.computed();
         let threshold = self.run.output.threshold;
+        let unit = self.plane().domain.units().label(" m");
         let mut maps = vec![Map {
             name: "count".to_owned(),
-            long_name: format!("number of members, of {count}, with a layer thicker than {threshold}"),
+            long_name: format!("number of members, of {count}, with a layer thicker than {threshold}{unit}"),
             units: "1",
             quantity: String::new(),
             measure: Measure::Members,

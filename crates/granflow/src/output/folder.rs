@@ -2,6 +2,7 @@
 
 use super::inputs::Input;
 use super::{Error, remove_if_there, remove_leftovers, whole_file};
+use std::fmt;
 use std::fs::{self, File, OpenOptions, TryLockError};
 use std::io::{self, Read, Seek, Write};
 use std::path::{Path, PathBuf};
@@ -34,9 +35,30 @@ const FILES: [&str; 22] = [
 /// The list of the files that a finished run left ([`Folder::list`]).
 const LEFT: &str = "checkpoint/files.json";
 const SIGNS: usize = 5;
+/// What an ensemble leaves, and a run does not.
+const OF_ENSEMBLE: [&str; 2] = ["checkpoint/ensemble.bin", "ensemble.json"];
 const FOLDERS: [&str; 4] = ["figures", "members", "rasters", "vtk"];
 /// Where the files of an earlier run go.
 const ASIDE: &str = "previous";
+
+/// What an earlier run or ensemble left, in its new place; says so in a sentence.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Moved {
+    /// Where it is now.
+    pub to: PathBuf,
+    /// It is of an ensemble.
+    pub ensemble: bool,
+    /// What was moved there before is gone.
+    pub replaced: bool,
+}
+
+impl fmt::Display for Moved {
+    fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let what = if self.ensemble { "ensemble" } else { "run" };
+        write!(out, "the files of an earlier {what} are now in {}", self.to.display())?;
+        if self.replaced { write!(out, ", in place of those that were there") } else { Ok(()) }
+    }
+}
 
 /// The folder, locked for as long as this lives; the system drops the lock with the process, however that ends.
 #[derive(Debug)]
@@ -105,16 +127,24 @@ impl Folder {
         Ok(())
     }
 
-    /// Moves what an earlier run left into the folder `previous`, in place of what was moved there before; returns that
-    /// folder if there was anything.
+    /// An earlier run or ensemble was here.
+    #[must_use]
+    pub fn is_taken(&self) -> bool {
+        FILES[..SIGNS].iter().any(|name| self.path.join(name).exists())
+    }
+
+    /// Moves what an earlier run or ensemble left into the folder `previous`, in place of what was moved there before; says what
+    /// if there was anything.
     ///
     /// # Errors
     /// [`Error::Io`] naming the file that cannot be moved.
-    pub fn clear(&self) -> Result<Option<PathBuf>, Error> {
-        if !FILES[..SIGNS].iter().any(|name| self.path.join(name).exists()) {
+    pub fn clear(&self) -> Result<Option<Moved>, Error> {
+        if !self.is_taken() {
             return Ok(None);
         }
         let aside = self.path.join(ASIDE);
+        let ensemble = OF_ENSEMBLE.iter().any(|name| self.path.join(name).exists());
+        let replaced = FILES.iter().chain(&FOLDERS).any(|name| aside.join(name).exists());
         for name in FILES {
             remove_if_there(&aside.join(name))?;
         }
@@ -131,7 +161,7 @@ impl Folder {
                 fs::rename(&here, aside.join(name)).map_err(Error::io(&here, "move"))?;
             }
         }
-        Ok(Some(aside))
+        Ok(Some(Moved { to: aside, ensemble, replaced }))
     }
 
     /// Lists the files of a finished run with lengths and checksums, so that a lost or changed one is noticed.
@@ -236,13 +266,20 @@ mod tests {
             write("notes.txt", run);
             write("checkpoint/state.bin", run);
             write(&format!("figures/{run}.png"), run);
-            assert_eq!(folder.clear().unwrap(), Some(at("previous")));
+            let moved = folder.clear().unwrap().unwrap();
+            assert_eq!((moved.to, moved.ensemble, moved.replaced), (at("previous"), false, run == "second"));
             assert_eq!(fs::read_to_string(at("previous/summary.json")).unwrap(), run);
             assert_eq!(fs::read_to_string(at("previous/checkpoint/state.bin")).unwrap(), run);
             assert!(at(&format!("previous/figures/{run}.png")).exists() && !at("figures").exists());
             assert_eq!(fs::read_to_string(at("notes.txt")).unwrap(), run);
         }
         assert!(!at("previous/figures/first.png").exists());
+        write("checkpoint/ensemble.bin", "x");
+        let told = folder.clear().unwrap().unwrap().to_string();
+        assert!(
+            told.contains("earlier ensemble") && told.ends_with("in place of those that were there"),
+            "{told}"
+        );
         assert!(Folder::take(outside.path()).is_err(), "the lock stays where it is");
     }
 }

@@ -29,7 +29,7 @@ impl Origin {
     ///
     /// # Errors
     /// Why it cannot, and what helps: the state stands on what differs.
-    pub(super) fn changes(&self, now: &Origin) -> Result<Vec<Change>, String> {
+    pub fn changes(&self, now: &Origin) -> Result<Vec<Change>, String> {
         let Some(changes) = changes(&self.case, &now.case) else {
             let cure = "give the case as it was, another --out, or start again without --resume";
             return Err(format!("the checkpoint is of another case than the one given; {cure}"));

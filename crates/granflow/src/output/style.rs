@@ -27,19 +27,20 @@ impl Style {
     #[must_use]
     pub fn qml(&self) -> String {
         let [low, high] = self.range;
+        let decimals = decimals((high - low) / f64::from(STOPS));
         let mut items = String::new();
         for k in 0..=STOPS {
             let share = f64::from(k) / f64::from(STOPS);
             let value = low + share * (high - low);
             let [r, g, b] = self.colours.at(share);
-            let label = escaped(&format!("{value:.3} {}", self.unit));
+            let label = escaped(&format!("{value:.decimals$} {}", self.unit));
             let label = label.trim_end();
             let _ = writeln!(
                 items,
                 "          <item value=\"{value:?}\" alpha=\"255\" color=\"#{r:02x}{g:02x}{b:02x}\" label=\"{label}\"/>"
             ); // a String takes everything
         }
-        let (above, label) = (self.above, escaped(&self.label));
+        let above = self.above;
         format!(
             r#"<!DOCTYPE qgis PUBLIC 'http://mrcc.com/qgis.dtd' 'SYSTEM'>
 <qgis version="3.22" styleCategories="Symbology|Legend">
@@ -51,8 +52,8 @@ impl Style {
         </singleValuePixelList>
       </rasterTransparency>
       <rastershader>
-        <colorrampshader colorRampType="INTERPOLATED" classificationMode="1" clip="0" minimumValue="{low:?}" maximumValue="{high:?}" labelPrecision="3">
-{items}          <rampLegendSettings prefix="{label} " suffix=" {unit}" direction="0" orientation="2" minimumLabel="" maximumLabel="" useContinuousLegend="1"/>
+        <colorrampshader colorRampType="INTERPOLATED" classificationMode="1" clip="0" minimumValue="{low:?}" maximumValue="{high:?}" labelPrecision="{decimals}">
+{items}          <rampLegendSettings prefix="" suffix=" {unit}" direction="0" orientation="2" minimumLabel="" maximumLabel="" useContinuousLegend="1"/>
         </colorrampshader>
       </rastershader>
     </rasterrenderer>
@@ -67,6 +68,11 @@ impl Style {
     }
 }
 
+/// Decimals that show two digits of a step between values.
+fn decimals(step: f64) -> usize {
+    if step > 0.0 { (1.0 - step.log10().floor()).clamp(0.0, 12.0) as usize } else { 0 }
+}
+
 /// A text as it may stand in an attribute.
 fn escaped(text: &str) -> String {
     text.replace('&', "&amp;").replace('<', "&lt;").replace('"', "&quot;")
@@ -79,8 +85,8 @@ mod tests {
     #[test]
     fn the_colours_of_a_layer_are_those_of_the_figure() {
         let style = Style {
-            label: "peak <thickness>".to_owned(),
-            unit: "m".to_owned(),
+            label: "peak thickness".to_owned(),
+            unit: "<m>".to_owned(),
             colours: Colours::Thickness,
             above: 0.01,
             range: [0.0, 4.0],
@@ -92,8 +98,11 @@ mod tests {
             assert!(qml.contains(&item), "{item}");
         }
         assert!(
-            qml.contains("max=\"0.01\" percentTransparent=\"100\"") && qml.contains("peak &lt;thickness>")
+            qml.contains("max=\"0.01\" percentTransparent=\"100\"") && qml.contains("suffix=\" &lt;m>\"")
         );
         assert_eq!(qml.matches("<item ").count(), 17);
+        assert!(qml.contains("label=\"0.25 &lt;m>\""));
+        let thin = Style { range: [0.0, 1e-3], unit: String::new(), ..style }.qml();
+        assert!(thin.contains("label=\"0.000500\""), "{thin}");
     }
 }

@@ -1,6 +1,6 @@
 //! The disk as a sink: frames, ledger and checkpoints while a run goes, all files that its case asks for at the end.
 
-mod checkpoints;
+pub(crate) mod checkpoints;
 mod ended;
 mod ending;
 mod going_on;

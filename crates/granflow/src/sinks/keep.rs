@@ -8,58 +8,20 @@ use crate::output::lines::Table;
 use crate::output::netcdf::{Dataset, Values, history};
 use crate::output::summary::{StopReason, Summary};
 use crate::output::{Error, Precision};
-use crate::results::Contents;
 use crate::results::numbers::{self, Start};
+use crate::results::{Contents, Numbers};
 use crate::run::{Maps, Run, check_state};
 use crate::watch::Watch;
 use granflow_case::RunPlan;
 use std::path::Path;
 use std::time::{Instant, SystemTime};
 
-/// The numbers of a series in the precision that the case asks for.
-#[derive(Debug, Clone, PartialEq)]
-pub enum Numbers {
-    /// 32 bits.
-    F32(Vec<f32>),
-    /// 64 bits.
-    F64(Vec<f64>),
-}
-
-impl Numbers {
-    fn none(precision: Precision) -> Numbers {
-        match precision {
-            Precision::F32 => Numbers::F32(Vec::new()),
-            Precision::F64 => Numbers::F64(Vec::new()),
-        }
-    }
-
-    /// Adds `length` numbers that `fill` puts, given the number of the first.
-    fn extend(&mut self, length: usize, fill: impl Fn(usize, &mut [f64])) {
-        const PART: usize = 1 << 15;
-        let values = match self {
-            Numbers::F64(values) => {
-                let start = values.len();
-                values.resize(start + length, 0.0);
-                return fill(0, &mut values[start..]);
-            }
-            Numbers::F32(values) => values,
-        };
-        values.reserve(length);
-        let mut part = vec![0.0; PART.min(length)];
-        for from in (0..length).step_by(PART) {
-            let part = &mut part[..PART.min(length - from)];
-            fill(from, part);
-            #[expect(clippy::cast_possible_truncation, reason = "rounding to f32 is what was asked for")]
-            values.extend(part.iter().map(|value| *value as f32));
-        }
-    }
-}
-
 /// Keeps the frames of a run, its gauges and its sections, as its case asks for them.
 pub struct Keep {
     plan: RunPlan,
     schedule: Schedule,
     watched: Series,
+    notes: Vec<String>,
     start: Start,
     lengths: Vec<usize>,
     times: Vec<f64>,
@@ -75,6 +37,8 @@ pub struct Kept {
     pub series: Vec<(String, Numbers)>,
     /// The run in numbers.
     pub summary: Summary,
+    /// What is to be said of its gauges and sections.
+    pub notes: Vec<String>,
     precision: Precision,
     times: Vec<f64>,
     maps: Maps,
@@ -86,6 +50,7 @@ impl Keep {
     /// Begins with the present state of `run` as the first frame; wall time counts from `begun` on.
     #[must_use]
     pub fn begin(plan: &RunPlan, begun: Instant, watch: Watch, run: &mut dyn Run) -> Keep {
+        let notes = watch.notes.clone();
         let watched = Series::new(watch, plan.watched.every, run);
         let fields = run.plane().series();
         let precision = plan.output.precision;
@@ -93,6 +58,7 @@ impl Keep {
             plan: plan.clone(),
             schedule: Schedule::new(plan.output.frames, run.plane()),
             watched,
+            notes,
             start: Start { at: begun, updates: run.stepper().updates() },
             lengths: fields.iter().map(|field| field.length).collect(),
             times: Vec::new(),
@@ -141,6 +107,7 @@ impl Keep {
             precision: self.plan.output.precision,
             times: self.times,
             maps,
+            notes: self.notes,
             tables: self.watched.into_tables()?,
             case: [self.plan.resolved(), self.plan.text()],
         })

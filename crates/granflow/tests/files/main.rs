@@ -3,6 +3,7 @@
 mod damaged;
 mod going_on;
 mod resumed;
+mod state;
 mod written;
 
 use granflow::Case;

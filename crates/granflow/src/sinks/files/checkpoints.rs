@@ -1,6 +1,7 @@
 //! A run on disk: what of it goes into `checkpoint/state.bin`, and back.
 
 use super::BeginError;
+use crate::output;
 use crate::output::checkpoint::{Checkpoint, Marks, Numbers, Origin, Past};
 use crate::run::{Record, Run, Saved, StopReason};
 use granflow_case::Change;
@@ -60,6 +61,21 @@ pub(super) fn of<'a>(
     arrays.extend(durations.map(|(k, part)| (format!("duration_{k}"), Numbers::Double(part))));
     let (origin, past) = (origin.clone(), past.clone());
     Checkpoint { origin, past, ended, step: run.steps(), time: run.time(), scalars, arrays }
+}
+
+/// Write the run as it stands, with no files beside it.
+pub(crate) fn write(run: &dyn Run, origin: &Origin, path: &Path) -> Result<(), output::Error> {
+    let due = Due { next: [f64::INFINITY; 3], every: [f64::INFINITY; 2] };
+    of(run, (origin, &Past::default()), due, None).write(path, Marks::default())
+}
+
+/// Read a checkpoint whatever files were beside it; says what changes in the case.
+pub(crate) fn take(
+    path: &Path,
+    origin: &Origin,
+    run: &dyn Run,
+) -> Result<(Saved<'static>, Vec<Change>), BeginError> {
+    read(path, origin, run).map(|(saved, taken)| (saved, taken.changes))
 }
 
 /// What a checkpoint holds beside the run.

@@ -8,7 +8,7 @@ use granflow_geo::Remark;
 use granflow_geo::raster::{Crs, Raster};
 use granflow_geo::terrain::{Curvature, Survey, Terrain};
 use std::path::PathBuf;
-use std::sync::Mutex;
+use std::sync::{Arc, Mutex};
 
 /// More cells than any machine holds.
 const MAX_CELLS: f64 = (1_u64 << 36) as f64;
@@ -68,7 +68,7 @@ fn bed(
     plan: &Plan,
     inputs: &Inputs,
     remarks: &mut Vec<Remark>,
-) -> Result<(Raster, Option<Crs>, usize), StartError> {
+) -> Result<(Arc<Raster>, Option<Crs>, usize), StartError> {
     let crs = match &plan.crs {
         Some(text) => Some(Crs::parse(text).map_err(|error| {
             run.fault("terrain.crs", error.to_string(), "write it as crs = \"EPSG:31287\"")
@@ -96,11 +96,12 @@ fn bed(
         let cure = "allowed are at least 3 along each side, and not more than a machine holds";
         return Err(run.fault("terrain.cell", message, cure).into());
     }
-    Ok((bed.resample(cell), crs, held))
+    let bed = if cell == bed.cell { bed } else { bed.resample(cell).into() };
+    Ok((bed, crs, held))
 }
 
 /// The part of the elevation model that the case asks for.
-fn part(run: &RunPlan, plan: &Plan, whole: Raster) -> Result<Raster, StartError> {
+fn part(run: &RunPlan, plan: &Plan, whole: Arc<Raster>) -> Result<Arc<Raster>, StartError> {
     let Some(region) = plan.region else { return Ok(whole) };
     let refused = |message: String| {
         let (x, y) = ([whole.west, whole.east()], [whole.south, whole.north()]);
@@ -117,11 +118,11 @@ fn part(run: &RunPlan, plan: &Plan, whole: Raster) -> Result<Raster, StartError>
     if part.range().is_none() {
         return Err(refused("none of its cells has an elevation".to_owned()));
     }
-    Ok(part)
+    Ok(part.into())
 }
 
 /// The bed with the window of the case around its cells.
-fn curved(run: &RunPlan, plan: &Plan, bed: Raster) -> Result<Terrain, StartError> {
+fn curved(run: &RunPlan, plan: &Plan, bed: Arc<Raster>) -> Result<Terrain, StartError> {
     let [width, height] = [bed.columns, bed.rows].map(|count| count as f64 * bed.cell);
     if let Some(length) = plan.curvature.filter(|length| *length > width.min(height)) {
         let message = format!("a window of {length} m is wider than the terrain of {width} m x {height} m");
