@@ -19,6 +19,8 @@ export async function read(list) {
   return files
 }
 
+// Whether a file stands beside another one: the same name, whatever comes after the last dot of the other.
+export const isBeside = (name, other) => name.startsWith(other.replace(/\.[^.]*$/, '.'))
 export const isElevation = name => /\.(asc|tiff?|txt|grd|agr)$/i.test(name)
 export const isRelease = name => /\.(geojson|json|shp)$/i.test(name)
 

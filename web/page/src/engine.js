@@ -1,4 +1,5 @@
 // The engine: WebAssembly behind calls that take and give JavaScript's values. The same in a worker and in node.
+import { isBeside } from './drop.js'
 import { System } from './wasi.js'
 
 // What the engine refuses, with the place and the cure.
@@ -91,8 +92,7 @@ export class Engine {
   get(name) { return this.system.files.get(name)?.slice() }
   // Takes away a file and what stands beside it under the same name: what is put next has sidecars of its own.
   forget(name) {
-    const stem = name.replace(/\.[^.]*$/, '.')
-    for (const other of [...this.system.files.keys()]) if (other.startsWith(stem)) this.system.files.delete(other)
+    for (const other of this.names()) if (isBeside(other, name)) this.system.files.delete(other)
   }
   names() { return [...this.system.files.keys()] }
   // Puts the mountain of `granflow demo` and its release among the files.

@@ -91,6 +91,7 @@ export function mountain(client, place) {
   }
 
   async function begin() {
+    const watched = site.mountain === chosen.mountain ? gauge?.at : null
     await close()
     complain(error)
     try {
@@ -108,7 +109,8 @@ export function mountain(client, place) {
       ...(run?.about.remarks ?? []).map(remark => make('li', {}, remark)),
       make('li', {}, `Memory: ${run ? `${megabytes(run.about.bytes)} for this run of ${run.about.cells.join(' × ')} cells, ` : ''}${megabytes(memory)} of the engine in all; a browser gives 4096 MB at most.`))
     player.changed()
-    draw()
+    if (run && watched) choose(watched)
+    else draw()
   }
   async function open() {
     run = await client.call('open', text())
@@ -317,7 +319,7 @@ export function mountain(client, place) {
         look().catch(reason => complain(error, reason))
       })),
     error, tools, view, legend, clock,
-    make('p', { class: 'hint' }, 'Drag to turn, scroll or pinch to come closer. Click a place, or write it here, to see thickness and speed there over time: ', where),
+    make('p', { class: 'hint' }, 'Drag to turn, scroll or pinch to come closer. Click a place, or write it here, to see thickness and speed there from then on: ', where),
     series, notes, drop,
     make('div', { class: 'row' },
       saves('case.toml', () => download('case.toml', text())),

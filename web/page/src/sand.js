@@ -72,13 +72,18 @@ export function sand(client, place) {
   }
   const pour = () => {
     wanted = pointer.down ? [{ x: +pointer.x.toFixed(3), y: +pointer.y.toFixed(3), radius: chosen.radius, rate: chosen.rate }] : []
-    forgetPile()
-    if (player.ended) player.ended = false
+    again()
     if (pointer.down) player.play()
   }
   function forgetPile() {
     equilibrium = null
     beside.hidden = true
+  }
+  // What was at its end or could not go on goes on.
+  function again() {
+    forgetPile()
+    complain(error)
+    player.ended = false
   }
 
   async function begin(sources = []) {
@@ -297,8 +302,7 @@ export function sand(client, place) {
       play, button('Reset', () => reset()),
       button('Pour everywhere', () => {
         wanted = [{ rate: 0.5 }]
-        forgetPile()
-        player.ended = false
+        again()
         player.play()
       }),
       button('The pile at once', atOnce),

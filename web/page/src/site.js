@@ -1,5 +1,5 @@
 // What an avalanche stands on: an elevation model and a release among the engine's files, built in, given or drawn.
-import { isElevation, isRelease, read, rings } from './drop.js'
+import { isBeside, isElevation, isRelease, read, rings } from './drop.js'
 import { MOUNTAINS, files, polygons } from './mountains.js'
 import { PICTURE } from './relief.js'
 
@@ -51,15 +51,14 @@ export class Site {
     if (!dem && !outline) {
       throw { message: `${all.map(([name]) => name).join(', ')}: no elevation model and no release`, help: ['drop a GeoTIFF or an ESRI ASCII grid, and polygons as GeoJSON or a shapefile (a zip of .shp, .dbf and .prj)'] }
     }
+    const mains = [dem, outline].filter(Boolean).map(([name]) => name)
     const before = new Map()
-    for (const [name] of all) {
-      for (const other of (await this.client.call('names')).filter(other => other.split('.')[0] === name.split('.')[0])) {
-        before.set(other, await this.client.call('get', other))
-      }
+    for (const name of await this.client.call('names')) {
+      if (mains.some(main => isBeside(name, main)) || all.some(([given]) => given === name)) before.set(name, await this.client.call('get', name))
     }
-    for (const main of [dem, outline]) if (main) await this.forget(main[0])
+    for (const main of mains) await this.forget(main)
     for (const [name, content] of all) await this.put(name, content)
-    const { release } = this
+    const { release, dem: former } = this
     const undo = async () => {
       for (const [name] of all) await this.forget(name)
       for (const [name, content] of before) await this.put(name, content)
@@ -72,7 +71,11 @@ export class Site {
       await undo()
       throw reason
     }
-    if (ground) Object.assign(this, { crs: null, release: null })
+    if (ground) {
+      // Nothing that stood before is needed any more.
+      for (const name of [former, release?.name]) if (name && !all.some(([given]) => isBeside(given, name))) await this.forget(name)
+      Object.assign(this, { crs: null, release: null })
+    }
     if (outline) this.outline(...outline)
     return { ground, undo }
   }
@@ -96,8 +99,7 @@ export class Site {
   async files() {
     const found = []
     for (const name of this.beside) {
-      const [stem] = name.split('.')
-      if ([this.dem, this.release?.name].some(main => main?.split('.')[0] === stem)) found.push([name, await this.client.call('get', name)])
+      if ([this.dem, this.release?.name].some(main => main && isBeside(name, main))) found.push([name, await this.client.call('get', name)])
     }
     return found
   }

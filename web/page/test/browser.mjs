@@ -85,6 +85,17 @@ function tools(page, pictures, program) {
       const { data } = context.getImageData(0, 0, 64, 64)
       return new Set(Array.from({ length: 64 * 64 }, (_, k) => [0, 1, 2].map(c => data[4 * k + c] >> 4).join())).size
     }),
+    // Where the mountain lies on its canvas: left, right, top, bottom as shares of it.
+    extent: () => page.$eval('#mountain .relief canvas', canvas => {
+      window.granflow.tabs.mountain.relief().draw()
+      const small = new OffscreenCanvas(100, 100)
+      const context = small.getContext('2d')
+      context.drawImage(canvas, 0, 0, 100, 100)
+      const { data } = context.getImageData(0, 0, 100, 100)
+      const at = Array.from({ length: 1e4 }, (_, k) => k).filter(k => data[4 * k + 3] > 0)
+      const ends = of => [Math.min(...at.map(of)) / 100, (1 + Math.max(...at.map(of))) / 100]
+      return [...ends(k => k % 100), ...ends(k => Math.floor(k / 100))]
+    }),
     // The files that a button offers: those in a zip, or the one.
     async saved(text) {
       const [download] = await Promise.all([page.waitForEvent('download'), page.click(`section:not([hidden]) button:text-is("${text}")`)])

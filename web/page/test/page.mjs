@@ -5,7 +5,7 @@ import { CASES } from './cases.mjs'
 
 const BUILT_IN = ['demo', 'gully', 'plane', 'dam', 'cone']
 
-await opened(process.argv.slice(2), async ({ page, idle, ended, click, choose, picture, colours, saved, native, checksums, error }) => {
+await opened(process.argv.slice(2), async ({ page, idle, ended, click, choose, picture, colours, extent, saved, native, checksums, error }) => {
   // A mountain that runs, and how often the page draws meanwhile.
   await choose('Speed', '5')
   await page.evaluate(() => { window.drawn = 0; const count = () => { window.drawn++; requestAnimationFrame(count) }; count() })
@@ -30,6 +30,8 @@ await opened(process.argv.slice(2), async ({ page, idle, ended, click, choose, p
     const said = await page.textContent('#mountain .clock')
     check(/at rest/.test(said) && await error('mountain') === '', `${name}: ${said}`)
     check(await colours('#mountain .relief canvas') > 12, `${name}: the relief is not blank`)
+    const [left, right, top, bottom] = await extent()
+    check(left > 0 && right < 1 && top > 0 && bottom < 1 && Math.max(right - left, bottom - top) > 0.5, `${name}: all of it is seen, from ${left} to ${right} and ${top} to ${bottom} of the picture`)
     const files = await saved('All as a zip: case, files, maps')
     const { checksums: here } = await checksums('mountain')
     const differ = differing(here, native(files))
