@@ -106,7 +106,11 @@ fn parts_of_any_order_are_the_whole() {
         fs::write(at(&one), damaged).unwrap();
         let output = granflow(folder.path(), &["ensemble", "slab.toml", "--part", "1/5"]);
         assert!(output.status.success() && fs::read(at(&one)).unwrap() == sound, "{}", told(&output));
-        assert!(told(&output).contains("part-1-of-5.bin") && told(&output).contains("again"), "{}", told(&output));
+        assert!(
+            told(&output).contains("part-1-of-5.bin") && told(&output).contains("again"),
+            "{}",
+            told(&output)
+        );
     }
     let told_of = |parts: &[&str]| {
         let output = merge(parts, "no");

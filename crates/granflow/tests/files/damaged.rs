@@ -79,7 +79,7 @@ impl Pair {
                 "time.end=9.3",
                 height,
             ];
-            Case::read_with(&folder.path().join("case.toml"), &changes.map(str::to_owned)).unwrap()
+            Case::read_with(folder.path().join("case.toml"), &changes.map(str::to_owned)).unwrap()
         };
         let [own, other] = [case("release.0.cap.height=2.0"), case("release.0.cap.height=2.1")];
         let left = |case: &Case, name: &str| {

@@ -126,8 +126,8 @@ fn curved(run: &RunPlan, plan: &Plan, bed: Arc<Raster>) -> Result<Terrain, Start
     let [width, height] = [bed.columns, bed.rows].map(|count| count as f64 * bed.cell);
     if let Some(length) = plan.curvature.filter(|length| *length > width.min(height)) {
         let message = format!("a window of {length} m is wider than the terrain of {width} m x {height} m");
-        let cure = "the window spans a few cells, for instance length = \"20 m\"";
-        return Err(run.fault("terrain.curvature.length", message, cure).into());
+        let cure = format!("the window spans a few cells, for instance length = \"{} m\"", 3.0 * bed.cell);
+        return Err(run.fault("terrain.curvature.length", message, &cure).into());
     }
     Ok(Terrain::new(bed, curvature_of(plan)))
 }
