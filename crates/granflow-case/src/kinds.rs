@@ -105,6 +105,21 @@ pub(crate) struct Foreign {
     pub cure: &'static str,
 }
 
+/// Two lists of keys as one.
+const fn joined<const A: usize, const B: usize, const ALL: usize>(
+    first: [&'static str; A],
+    second: [&'static str; B],
+) -> [&'static str; ALL] {
+    assert!(A + B == ALL, "the list is as long as both");
+    let mut all = [""; ALL];
+    let mut number = 0;
+    while number < ALL {
+        all[number] = if number < A { first[number] } else { second[number - A] };
+        number += 1;
+    }
+    all
+}
+
 /// A kind in the list.
 struct Listed {
     about: About,

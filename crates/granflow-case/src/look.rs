@@ -9,6 +9,15 @@ use std::path::{Path, PathBuf};
 /// cell: areas, pressures and energies made of them are then numbers in single precision too, in which maps are kept.
 pub(crate) const LARGEST: f64 = 1e12;
 
+/// The `result.nc` of another run, given by its folder or itself.
+pub(crate) fn result_of(path: &Path) -> PathBuf {
+    if path.extension().is_some_and(|ending| ending == "nc") {
+        path.to_owned()
+    } else {
+        path.join("result.nc")
+    }
+}
+
 /// The text of a case and the files it may name.
 #[derive(Clone, Copy)]
 pub(crate) struct Look<'a> {

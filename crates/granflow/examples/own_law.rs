@@ -63,7 +63,7 @@ fn slab(thickness: f64, angle: f64) -> Result<Box<dyn Run>, Box<dyn std::error::
     let start = |_| Flow::still(thickness);
     let simulation = Simulation::with_loops(LOOPS, scheme, grid, StepSize::Courant(0.9), |_| plane, start)?;
     let shown = Flowing::<1, Scheme>::new("balanced", 1e-6, false);
-    Ok(Box::new(Simulated::new(simulation, shown, Plane::of(&grid, Arc::new(ChuteDomain)))))
+    Ok(Box::new(Simulated::new(simulation, shown, Plane::of(&grid, Arc::new(ChuteDomain::default())))))
 }
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {

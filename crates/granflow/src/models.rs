@@ -33,9 +33,12 @@ pub(crate) fn start(
     shared: Option<&Shared>,
 ) -> Result<Box<dyn Run>, StartError> {
     #[cfg(not(feature = "geo"))]
-    let _ = (inputs, shared);
+    let _ = shared;
     match kind {
-        Kind::Chute(plan) => savage_hutter::run::chute::start(run, &plan),
+        Kind::Chute(plan) => {
+            let laid = savage_hutter::run::laid::Laid::of(&plan, inputs)?;
+            savage_hutter::run::chute::start(run, &plan, &laid)
+        }
         #[cfg(feature = "geo")]
         Kind::Terrain(plan) => {
             savage_hutter::run::terrain::start(run, &plan, inputs, shared.map(|shared| &shared.mountains))

@@ -92,13 +92,13 @@ pub enum Error {
 }
 
 impl Error {
-    fn io(path: &Path, action: &'static str) -> impl FnOnce(io::Error) -> Self + use<> {
+    pub(crate) fn io(path: &Path, action: &'static str) -> impl FnOnce(io::Error) -> Self + use<> {
         let path = path.to_owned();
         // An error of ours that travelled through an io::Write comes out as itself.
         move |source| source.downcast().unwrap_or_else(|source| Self::Io { path, action, source })
     }
 
-    fn damaged(path: &Path, problem: impl Into<String>) -> Self {
+    pub(crate) fn damaged(path: &Path, problem: impl Into<String>) -> Self {
         Self::Damaged { path: path.to_owned(), problem: problem.into() }
     }
 

@@ -17,11 +17,13 @@ pub enum StartError {
     #[cfg(feature = "geo")]
     #[error(transparent)]
     Release(Box<granflow_geo::release::ReleaseError>),
-    /// A release names the result of a run that cannot be used.
-    #[error("{}: {problem}; name the folder of a finished run on terrain, or its result.nc", path.display())]
+    /// A case begins with the result of a run that cannot be used.
+    #[error("{}: {problem}; name the folder of a finished run on {place}, or its result.nc", path.display())]
     Result {
         /// The file.
         path: std::path::PathBuf,
+        /// What the run must be on: `a terrain`, `a chute`.
+        place: &'static str,
         /// What is wrong with it.
         problem: String,
     },

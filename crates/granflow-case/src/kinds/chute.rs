@@ -4,21 +4,23 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::avalanche::{self, EarthPressure, Friction, InSpace, Material, Method, SchemeName};
-use super::{About, Foreign, Kind, Written};
+use super::{About, Foreign, Kind, Written, joined};
 use crate::boundary::{Boundary, Side};
 use crate::ensemble;
 use crate::fault::CaseError;
-use crate::grid::{Axis, Grid, Points};
+use crate::grid::{Axis, Grid};
 use crate::look::Look;
 use crate::output::{Defaults, ON_A_GRID, Output};
 use crate::plan::{Ends, RunPlan};
 use crate::precision::Precision;
-use crate::quantity::{Quantity, Values};
 use crate::source::Missing;
 use crate::watched::{self, Gauge, SectionWords};
 
+mod initial;
 mod slope;
 
+use initial::Initial;
+pub use initial::InitialState;
 pub use slope::Columns;
 use slope::Slope;
 
@@ -64,17 +66,6 @@ impl Plan {
     pub fn beta(&self, column: usize) -> f64 {
         self.epsilon * self.material.pressure_coefficient * self.weight(column)
     }
-}
-
-/// The state at time 0 at the centres of the cells, x fastest.
-#[derive(Debug, Clone)]
-pub struct InitialState {
-    /// Thickness h, not negative.
-    pub thickness: Values,
-    /// Velocity along x.
-    pub velocity_x: Values,
-    /// Velocity along y, 0 in one dimension.
-    pub velocity_y: Values,
 }
 
 /// An avalanche in the papers' scaling, on a chute.
@@ -154,21 +145,6 @@ struct OnChute {
     /// Gravity g (default 1: times are scaled by sqrt(L/g)).
     #[serde(skip_serializing_if = "Option::is_none")]
     gravity: Option<f64>,
-}
-
-/// The state at time 0 at the centres of the cells.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-#[schemars(rename = "ChuteInitial")]
-struct Initial {
-    /// Thickness h, not negative.
-    thickness: Quantity,
-    /// Velocity along x (default 0).
-    #[serde(skip_serializing_if = "Option::is_none")]
-    velocity_x: Option<Quantity>,
-    /// Velocity along y (default 0).
-    #[serde(skip_serializing_if = "Option::is_none")]
-    velocity_y: Option<Quantity>,
 }
 
 impl Written for Words {
@@ -314,31 +290,6 @@ fn check_pressure(look: &Look, material: &Material, sides: &[[Side; 2]; 2]) -> R
     Ok(())
 }
 
-impl Initial {
-    fn check(&self, look: &Look, grid: &Grid) -> Result<InitialState, CaseError> {
-        let quantities = [
-            ("initial.thickness", Some(&self.thickness)),
-            ("initial.velocity_x", self.velocity_x.as_ref()),
-            ("initial.velocity_y", self.velocity_y.as_ref()),
-        ];
-        for (key, quantity) in quantities {
-            if let Some(path) = quantity.and_then(Quantity::needs_file) {
-                look.file(&format!("{key}.file"), path)?;
-            }
-        }
-        let [(h, thickness), (u, along), (v, across)] = quantities;
-        if across.is_some() && grid.y.is_none() {
-            return Err(look.fault(v, "the grid has no y", "remove velocity_y, or add grid.y"));
-        }
-        let points: Points = grid.centres();
-        Ok(InitialState {
-            thickness: look.layer(&points, h, thickness)?,
-            velocity_x: look.evaluate(&points, u, along)?,
-            velocity_y: look.evaluate(&points, v, across)?,
-        })
-    }
-}
-
 /// Bytes of the state of a cell in two dimensions, before anything is computed.
 const STATE: f64 = 24.0;
 
@@ -346,27 +297,10 @@ const STATE: f64 = 24.0;
 const WRITTEN: Defaults = Defaults { files: ON_A_GRID, precision: Precision::F64, threshold: THRESHOLD };
 
 /// Keys that not every model has.
-const KEYS: [&str; 14] = {
-    let [material, film, rest_speed, trickle, stop, gauge, section, series, durations, ensemble] =
-        avalanche::KEYS;
-    let [h, u, v] = ["initial.thickness", "initial.velocity_x", "initial.velocity_y"];
-    [
-        material,
-        film,
-        rest_speed,
-        trickle,
-        stop,
-        gauge,
-        section,
-        series,
-        durations,
-        ensemble,
-        "grid.boundary",
-        h,
-        u,
-        v,
-    ]
-};
+const KEYS: [&str; 15] = joined(
+    avalanche::KEYS,
+    ["grid.boundary", "initial.thickness", "initial.velocity_x", "initial.velocity_y", "initial.result"],
+);
 
 /// Keys of other kinds.
 const FOREIGN: &[Foreign] = &[Foreign {

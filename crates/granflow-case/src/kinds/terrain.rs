@@ -6,7 +6,7 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::avalanche::{self, EarthPressure, Friction, Material, Method, Parameter, SchemeName};
-use super::{About, Foreign, Kind, Written};
+use super::{About, Foreign, Kind, Written, joined};
 use crate::ensemble;
 use crate::fault::CaseError;
 use crate::look::Look;
@@ -263,26 +263,7 @@ const WRITTEN: Defaults = Defaults {
 };
 
 /// Keys that not every model has.
-const KEYS: [&str; 14] = {
-    let [material, film, rest_speed, trickle, stop, gauge, section, series, durations, ensemble] =
-        avalanche::KEYS;
-    [
-        material,
-        film,
-        rest_speed,
-        trickle,
-        stop,
-        gauge,
-        section,
-        series,
-        durations,
-        ensemble,
-        "terrain",
-        "release",
-        "inflow",
-        "entrainment",
-    ]
-};
+const KEYS: [&str; 14] = joined(avalanche::KEYS, ["terrain", "release", "inflow", "entrainment"]);
 
 /// A key that only a scaled case has.
 const fn scaled(key: &'static str, message: &'static str) -> Foreign {

@@ -106,7 +106,7 @@ pub enum ReleaseError {
     /// The release and the terrain are in different coordinate reference systems.
     #[error(
         "{path} is in {own}, the terrain in {terrain} ({proof}); reproject the polygons with\n  \
-         ogr2ogr -t_srs {} release_reprojected.shp {path}{}", target[0], target[1], path = path.display()
+         ogr2ogr -t_srs {} {stem}_reprojected.shp {path}{}", target[0], target[1], stem = stem(path), path = path.display()
     )]
     System {
         /// The file.
@@ -123,8 +123,8 @@ pub enum ReleaseError {
     /// The release is not in metres, and the terrain says no system.
     #[error(
         "{path} is in {own}, which is not in metres, and the terrain says no system; name it by crs = \"EPSG:xxxx\" in \
-         [terrain], and reproject the polygons with\n  ogr2ogr -t_srs EPSG:xxxx release_reprojected.shp {path}",
-        path = path.display()
+         [terrain], and reproject the polygons with\n  ogr2ogr -t_srs EPSG:xxxx {stem}_reprojected.shp {path}",
+        stem = stem(path), path = path.display()
     )]
     NoSystem {
         /// The file.
@@ -265,6 +265,11 @@ impl ReleaseError {
     }
 }
 
+/// The path without its ending: what is made of a file is called after it, beside it.
+fn stem(path: &Path) -> String {
+    path.with_extension("").display().to_string()
+}
+
 /// What helps against a release that the terrain does not hold.
 const WIDER: &str = "cut the terrain wider, fill its gaps (gdal_fillnodata.py), or shrink the release";
 
@@ -294,10 +299,11 @@ impl Form {
 
     /// The command from one system into that of a terrain. It names both, since such a file rarely says its own.
     fn reproject(self, path: &Path, from: &str, terrain: Option<&Crs>) -> String {
-        let ([target, about], path, stem) =
-            (Crs::target(terrain), path.display(), path.with_extension("").display().to_string());
+        let ([target, about], stem, path) = (Crs::target(terrain), stem(path), path.display());
         match self {
-            Form::Polygons => format!("ogr2ogr -t_srs {target} -s_srs {from} reprojected.shp {path}{about}"),
+            Form::Polygons => {
+                format!("ogr2ogr -t_srs {target} -s_srs {from} {stem}_reprojected.shp {path}{about}")
+            }
             Form::Raster => {
                 format!("gdalwarp -t_srs {target} -s_srs {from} {path} {stem}_reprojected.tif{about}")
             }

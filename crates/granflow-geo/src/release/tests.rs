@@ -157,6 +157,11 @@ fn refusals_of_geojson_name_the_feature_and_the_cure() {
     let message =
         released(&collection(std::slice::from_ref(&square), crs), &ONE, &terrain).unwrap_err().to_string();
     assert!(message.contains("EPSG:32632 (WGS 84 / UTM zone 32N)") && message.contains("datum"), "{message}");
+    assert!(
+        message.contains("ogr2ogr -t_srs EPSG:31287") && message.contains("_reprojected.shp "),
+        "{message}"
+    );
+    assert!(!message.contains(" release_reprojected"), "what is made is called after the file: {message}");
     let unknown = collection(&[square], r#""crs":{"type":"name","properties":{"name":"ESRI:102100"}},"#);
     assert!(refused(&unknown, &ONE).contains("ogr2ogr -a_srs EPSG:xxxx"), "its system is not dropped");
 }

@@ -8,8 +8,8 @@ use std::path::Path;
 /// The largest thickness and speed near each place of a path at each instant.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Along {
-    /// What counts lies within half of this from the path.
-    pub width: f64,
+    /// What counts lies within half of this from the path; the table that [`Along::write`] writes does not say it.
+    pub width: Option<f64>,
     /// The places: distances along the path, and where they are.
     pub distance: Vec<f64>,
     /// Coordinates of the places.
@@ -48,7 +48,8 @@ impl Along {
         let distance: Vec<f64> = (0..count).map(|k| (k as f64 + 0.5) * step).collect();
         let places = distance.iter().map(|distance| at(points, *distance)).collect();
         let nothing = vec![f64::NAN; count * times.len()];
-        let mut along = Along { width, distance, places, times, thickness: nothing.clone(), speed: nothing };
+        let mut along =
+            Along { width: Some(width), distance, places, times, thickness: nothing.clone(), speed: nothing };
         let near = near(points, 0.5 * width, [x, y]);
         for instant in 0..along.times.len() {
             let (h, u) = (frames.read(instant, thickness)?, frames.read(instant, speed)?);
@@ -69,7 +70,7 @@ impl Along {
     pub fn write(&self, path: &Path) -> Result<(), Error> {
         let cell = |value: f64| if value.is_nan() { String::new() } else { format!("{value:?}") };
         whole_file(path, |out| {
-            writeln!(out, "time,distance,x,y,thickness,speed")?;
+            writeln!(out, "{HEADER}")?;
             for (instant, time) in self.times.iter().enumerate() {
                 for (k, (distance, [x, y])) in self.distance.iter().zip(&self.places).enumerate() {
                     let [h, u] =
@@ -80,6 +81,58 @@ impl Along {
             Ok(())
         })
     }
+}
+
+/// The first line of the table.
+const HEADER: &str = "time,distance,x,y,thickness,speed";
+
+impl Along {
+    /// Reads back what [`Along::write`] wrote.
+    ///
+    /// # Errors
+    /// [`Error::Io`]; [`Error::Damaged`] naming the first line that does not fit.
+    pub fn read(path: &Path) -> Result<Along, Error> {
+        let text = std::fs::read_to_string(path).map_err(Error::io(path, "read"))?;
+        let wrong = |number: usize, line: &str| {
+            Error::damaged(path, format!("line {number} does not fit the lines before: {line:?}"))
+        };
+        let mut lines = text.lines().zip(1..);
+        let header = lines.next().map_or("", |(line, _)| line);
+        if header != HEADER {
+            return Err(wrong(1, header));
+        }
+        let rows: Vec<[f64; 6]> = lines
+            .map(|(line, number)| row(line).ok_or_else(|| wrong(number, line)))
+            .collect::<Result<_, _>>()?;
+        let count = rows.iter().take_while(|row| row[0] == rows[0][0]).count();
+        for (number, one) in rows.iter().enumerate() {
+            if one[1..4] != rows[number % count][1..4] || one[0] != rows[number - number % count][0] {
+                return Err(wrong(number + 2, text.lines().nth(number + 1).unwrap_or_default()));
+            }
+        }
+        if count == 0 || !rows.len().is_multiple_of(count) {
+            return Err(Error::damaged(path, "its last instant is not whole".to_owned()));
+        }
+        let of = |column: usize| -> Vec<f64> {
+            (0..count)
+                .flat_map(|place| rows[place..].iter().step_by(count).map(move |row| row[column]))
+                .collect()
+        };
+        Ok(Along {
+            width: None,
+            distance: rows[..count].iter().map(|row| row[1]).collect(),
+            places: rows[..count].iter().map(|row| [row[2], row[3]]).collect(),
+            times: rows.iter().step_by(count).map(|row| row[0]).collect(),
+            thickness: of(4),
+            speed: of(5),
+        })
+    }
+}
+
+/// The numbers of a line of the table; an empty cell is none.
+fn row(line: &str) -> Option<[f64; 6]> {
+    let number = |cell: &str| if cell.is_empty() { Some(f64::NAN) } else { cell.parse().ok() };
+    line.split(',').map(number).collect::<Option<Vec<f64>>>()?.try_into().ok()
 }
 
 fn apart(a: [f64; 2], b: [f64; 2]) -> f64 {
@@ -159,7 +212,17 @@ mod tests {
         assert!(along.thickness.iter().skip(1).step_by(2).all(|h| h.is_nan()), "nothing is left");
         let path = folder.path().join("range_time.csv");
         along.write(&path).unwrap();
-        let text = std::fs::read_to_string(path).unwrap();
+        let text = std::fs::read_to_string(&path).unwrap();
+        let read = Along::read(&path).unwrap();
+        assert_eq!(
+            (read.width, &read.distance, &read.places, &read.times),
+            (None, &along.distance, &along.places, &along.times)
+        );
+        let bits = |values: &[f64]| values.iter().map(|value| value.to_bits()).collect::<Vec<_>>();
+        assert_eq!(bits(&read.thickness), bits(&along.thickness));
+        assert_eq!(bits(&read.speed), bits(&along.speed));
+        std::fs::write(&path, &text[..text.len() - 12]).unwrap();
+        assert!(Along::read(&path).unwrap_err().to_string().contains("line 33 does not fit"));
         let lines: Vec<&str> = text.lines().collect();
         assert_eq!(
             (lines.len(), lines[4], lines[20]),

@@ -45,29 +45,48 @@ fn series<'a>(
                 shown.push((column, curves));
             }
         }
+        let names: Vec<String> = (0..count).map(|k| named(&table.names[k], &shown, k)).collect();
         let curves: Vec<Vec<Curve>> = shown
             .iter()
             .enumerate()
             .map(|(panel, (_, values))| {
-                let curve = |(name, y): (&'a String, _)| Curve {
+                let curve = |(name, y)| Curve {
                     // One panel names them all.
-                    name: if panel == 0 { name.as_str() } else { "" },
+                    name: if panel == 0 { name } else { "" },
                     x: &table.times,
                     y,
                     ..Default::default()
                 };
-                table.names.iter().zip(values.iter().map(Vec::as_slice)).map(curve).collect()
+                names.iter().map(String::as_str).zip(values.iter().map(Vec::as_slice)).map(curve).collect()
             })
             .collect();
         let panels: Vec<HistoryPanel> = shown
             .iter()
             .zip(&curves)
-            .map(|(((_, label, unit), _), curves)| HistoryPanel {
-                y: Axis::new(label, view.unit(unit)),
+            .map(|(((_, label, unit), values), curves)| HistoryPanel {
+                y: from_zero(Axis::new(label, view.unit(unit)), values),
                 curves,
             })
             .collect();
         let time = Axis::new("time t", view.unit("s"));
         History { title: &view.title, subtitle: &view.subtitle, time, panels: &panels }.draw()
     })
+}
+
+/// A place as the legend names it, number `k` of them: with a word where all of its values stay 0.
+fn named(name: &str, shown: &[(Column, Vec<Vec<f64>>)], k: usize) -> String {
+    let came =
+        shown.iter().flat_map(|(_, curves)| &curves[k]).any(|value| value.is_finite() && *value != 0.0);
+    if came { name.to_owned() } else { format!("{name}: nothing came") }
+}
+
+/// An axis that begins at 0, where none of its values is negative.
+fn from_zero<'a>(axis: Axis<'a>, curves: &[Vec<f64>]) -> Axis<'a> {
+    let finite = || curves.iter().flatten().copied().filter(|value| value.is_finite());
+    let (least, largest) = (finite().fold(0.0, f64::min), finite().fold(0.0, f64::max));
+    match (least, largest) {
+        (0.0, 0.0) => axis.over(0.0, 1.0),
+        (0.0, largest) => axis.over(0.0, 1.07 * largest),
+        _ => axis,
+    }
 }

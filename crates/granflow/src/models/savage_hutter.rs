@@ -3,6 +3,8 @@
 #[cfg(feature = "figures")]
 mod chute;
 #[cfg(feature = "files")]
+mod ended;
+#[cfg(feature = "files")]
 mod findings;
 #[cfg(all(feature = "figures", feature = "geo"))]
 mod maps;
@@ -109,8 +111,11 @@ pub static MODEL: Model = Model {
 };
 
 /// A chute in the papers' scaling, in one or two dimensions.
-#[derive(Debug, Clone, Copy, Default)]
-pub struct ChuteDomain;
+#[derive(Debug, Clone, Default)]
+pub struct ChuteDomain {
+    /// What a user should know of the files that were read for it: [`Domain::remarks`].
+    pub remarks: Vec<String>,
+}
 
 impl Domain for ChuteDomain {
     fn model(&self) -> &'static Model {
@@ -123,5 +128,9 @@ impl Domain for ChuteDomain {
             "surface" | "speed" => false,
             _ => true,
         }
+    }
+
+    fn remarks(&self) -> Vec<String> {
+        self.remarks.clone()
     }
 }

@@ -122,6 +122,7 @@ impl<'r> Story<'r> {
         }
         let table = |name: &str| beside(name).map(|path| Table::read(&path)).transpose();
         let watched = [table("gauges.csv")?, table("sections.csv")?];
+        let along = beside("range_time.csv").map(|path| Along::read(&path)).transpose()?;
         let view = View {
             title: file.text("title"),
             subtitle: subtitle(&plane, &file.text("scheme"), &file.text("stop_reason"), time),
@@ -131,7 +132,7 @@ impl<'r> Story<'r> {
             maps,
             ledger,
             watched,
-            along: None,
+            along,
             x: plane.x,
             y: plane.y,
         };

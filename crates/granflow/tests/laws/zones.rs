@@ -163,6 +163,11 @@ fn what_is_wrong_with_a_field_is_named_with_its_place_and_a_cure() {
         ),
         ("coulomb = { mu = { polygons = \"west.geojson\" } }", second, vec!["attribute", "missing"]),
         (
+            "coulomb = { mu = { polygons = \"west.geojson\", attribute = \"mv\" } }",
+            second,
+            vec!["`material.friction.coulomb.mu.attribute`", "west.geojson", "did you mean `mu`?"],
+        ),
+        (
             "coulomb = { mu = { raster = \"low.asc\", attribute = \"mu\" } }",
             second,
             vec!["attribute", "belongs to polygons"],

@@ -7,7 +7,7 @@ use serde::{Deserialize, Deserializer, Serialize};
 
 use crate::choice::{Plain, plain_or_table};
 use crate::fault::CaseError;
-use crate::look::Look;
+use crate::look::{Look, result_of};
 
 /// Mass that is released.
 #[derive(Debug, Clone, PartialEq)]
@@ -199,7 +199,7 @@ impl Words {
     pub fn check(&self, look: &Look, key: &str) -> Result<Release, CaseError> {
         let thickness_key = format!("{key}.thickness");
         let (measured, starts) = (self.measured, self.starts(look, key)?);
-        let extent = match (&self.polygons, &self.raster, &self.cap, self.stored()) {
+        let extent = match (&self.polygons, &self.raster, &self.cap, &self.result) {
             (Some(path), None, None, None) => {
                 let Some(thickness) = self.thickness.clone() else {
                     return Err(look.fault(
@@ -217,7 +217,7 @@ impl Words {
             }
             (None, Some(path), None, None) => Extent::Raster(look.locate(path)),
             (None, None, Some(cap), None) => Extent::Cap(cap.clone()),
-            (None, None, None, Some(path)) => Extent::Result(look.locate(&path)),
+            (None, None, None, Some(path)) => Extent::Result(look.locate(&result_of(path))),
             _ => {
                 return Err(look.fault(
                     key,
@@ -250,16 +250,6 @@ impl Words {
         Ok(Release { extent, measured, starts })
     }
 
-    /// The result.nc of another run.
-    fn stored(&self) -> Option<PathBuf> {
-        let path = self.result.as_ref()?;
-        Some(if path.extension().is_some_and(|ending| ending == "nc") {
-            path.clone()
-        } else {
-            path.join("result.nc")
-        })
-    }
-
     fn starts(&self, look: &Look, key: &str) -> Result<Starts, CaseError> {
         match (self.at, self.when) {
             (None, None) => Ok(Starts::At(0.0)),
@@ -278,7 +268,7 @@ impl Words {
 
     /// The files must exist.
     pub fn check_files(&self, look: &Look, key: &str) -> Result<(), CaseError> {
-        let stored = self.stored();
+        let stored = self.result.as_deref().map(result_of);
         for (name, path) in [("polygons", &self.polygons), ("raster", &self.raster), ("result", &stored)] {
             path.iter().try_for_each(|path| look.file(&format!("{key}.{name}"), path))?;
         }

@@ -228,7 +228,9 @@ pub(super) fn figures<'a>(view: &'a View<'a>, terrain: &'a TerrainDomain) -> Vec
 fn range_time<'a>(view: &'a View<'a>) -> Vec<Drawing<'a>> {
     let Some(along) = &view.along else { return Vec::new() };
     let drawing = |(name, label, unit, values, colours): (_, &'static str, _, &'a [f64], _)| {
-        let what = format!("largest {label} within {} m of the path", short(0.5 * along.width));
+        let near =
+            along.width.map_or("near".to_owned(), |width| format!("within {} m of", short(0.5 * width)));
+        let what = format!("largest {label} {near} the path");
         let caption = format!(
             "The {what} at every instant of the series: time from left to right, distance from the begin of the path upwards; white \
              where nothing is thicker than the threshold."

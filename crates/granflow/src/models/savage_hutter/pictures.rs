@@ -18,7 +18,7 @@ impl Pictures for Avalanche {
 
     /// A chute, or the mountain where the file has a bed.
     fn domain(&self, file: &ResultFile, centres: [&[f64]; 2]) -> Result<Arc<dyn Domain>, String> {
-        if file.has("bed") { terrain(file, centres) } else { Ok(Arc::new(ChuteDomain)) }
+        if file.has("bed") { terrain(file, centres) } else { Ok(Arc::new(ChuteDomain::default())) }
     }
 
     /// Those of a mountain show maps alone.

@@ -10,8 +10,11 @@ mod erosion;
 pub mod flowing;
 #[cfg(feature = "geo")]
 mod forest;
+pub(crate) mod laid;
 #[cfg(feature = "geo")]
 mod left;
+#[cfg(feature = "geo")]
+mod loaded;
 #[cfg(feature = "geo")]
 pub(crate) mod mountain;
 #[cfg(feature = "geo")]

@@ -1,10 +1,10 @@
 //! A mountain, and what lies on it, as a `result.nc` has them.
 
+use super::ended::{self, Ended};
 use super::terrain::TerrainDomain;
 use crate::model::ResultFile;
 use crate::raster::{Crs, Raster};
 use crate::release::Sparse;
-use crate::stop_reason::StopReason;
 use crate::terrain::{Curvature, Terrain};
 use std::path::Path;
 use std::sync::Arc;
@@ -34,14 +34,8 @@ pub(super) struct Last {
 
 /// The last state in the `result.nc` of a run on a mountain.
 pub(super) fn last(path: &Path) -> Result<Last, String> {
-    let file = ResultFile::open(path)?;
-    if !file.has("bed") || !file.has("thickness") {
-        return Err("it is no result of an avalanche on a terrain".to_owned());
-    }
-    let (x, y, times) = (file.whole("x")?, file.whole("y")?, file.whole("time")?);
-    let (Some(instant), Some(&time)) = (times.len().checked_sub(1), times.last()) else {
-        return Err("it has no instant".to_owned());
-    };
+    let Ended { file, instant, time, rests } = ended::open(path, true)?;
+    let (x, y) = (file.whole("x")?, file.whole("y")?);
     let domain = domain(&file, [&x, &y])?;
     let thickness = file.instant("thickness", instant, 2)?;
     let terrain = Terrain::new((*domain.raster).clone(), domain.curvature);
@@ -51,8 +45,6 @@ pub(super) fn last(path: &Path) -> Result<Last, String> {
         *value /= f64::from(terrain.fit(domain.raster.place(cell)).cosine() as f32);
     }
     let volume = Raster { crs: domain.raster.crs.clone(), ..domain.raster.with_values(values) };
-    let reason = file.text("stop_reason");
-    let rests = [StopReason::AtRest, StopReason::Trickle].iter().any(|rest| rest.to_string() == reason);
     Ok(Last { volume, time, rests })
 }
 

@@ -199,7 +199,7 @@ impl<'a, const D: usize> Avalanche<'a, D, Slope> {
         let mut tilt = [0.0; D];
         tilt[0] = gravity * angle.sin();
         let ground = Chute { tilt, beta: epsilon * cos, cos, curvature: 0.0 };
-        self.run(ChuteDomain, false, |_| ground)
+        self.run(ChuteDomain::default(), false, |_| ground)
     }
 }
 

@@ -6,8 +6,8 @@ use granflow_model::scheme::Scheme;
 
 /// Something that acts between two steps.
 pub(super) trait BetweenSteps<const D: usize, S: Scheme<D, f64>>: Send + Sync {
-    /// Act up to the time of the simulation; again at the same time nothing.
-    fn act(&mut self, simulation: &mut Simulation<D, S>);
+    /// Act up to the time of the simulation, `dt` after it last did; again at the same time, with 0, nothing.
+    fn act(&mut self, simulation: &mut Simulation<D, S>, dt: f64);
     /// The time up to which nothing else comes, or by which it must be asked again.
     fn next(&self, _simulation: &Simulation<D, S>) -> f64 {
         f64::INFINITY

@@ -3,6 +3,7 @@
 use super::super::ChuteDomain;
 use super::compression::Compression;
 use super::flowing::Flowing;
+use super::laid::Laid;
 use crate::StartError;
 use crate::memory::fits;
 use crate::model::Plane;
@@ -34,41 +35,45 @@ pub(crate) struct Part {
 }
 
 /// The run of a case on a chute.
-pub(crate) fn start(run: &RunPlan, plan: &Plan) -> Result<Box<dyn Run>, StartError> {
-    part(run, plan, Part { from: [0; 2], cells: plan.grid.cells() })
+pub(crate) fn start(run: &RunPlan, plan: &Plan, laid: &Laid) -> Result<Box<dyn Run>, StartError> {
+    part(run, (plan, laid), Part { from: [0; 2], cells: plan.grid.cells() })
 }
 
 /// The run of a part of a chute, open where the chute goes on.
-pub(crate) fn part(run: &RunPlan, plan: &Plan, part: Part) -> Result<Box<dyn Run>, StartError> {
-    if plan.grid.y.is_none() { on::<1>(run, plan, part) } else { on::<2>(run, plan, part) }
+pub(crate) fn part(run: &RunPlan, chute: Chuted, part: Part) -> Result<Box<dyn Run>, StartError> {
+    if chute.0.grid.y.is_none() { on::<1>(run, chute, part) } else { on::<2>(run, chute, part) }
 }
 
-fn on<const D: usize>(run: &RunPlan, plan: &Plan, part: Part) -> Result<Box<dyn Run>, StartError> {
+/// A chute, and what another run left on it.
+pub(crate) type Chuted<'a> = (&'a Plan, &'a Laid);
+
+fn on<const D: usize>(run: &RunPlan, chute: Chuted, part: Part) -> Result<Box<dyn Run>, StartError> {
+    let (plan, _) = chute;
     let mu = plan.material.mu.unwrap_or(0.0);
     let Method { name, film } = plan.scheme;
     let Some(law) = plan.material.law_in_loops() else {
         let law = plan.material.law;
         let second = name == SchemeName::EnergyStable2;
         let scheme = if second { EnergyStable::second(law, film) } else { EnergyStable::first(law, film) };
-        return simulate::<D, _>(run, plan, part, scheme);
+        return simulate::<D, _>(run, chute, part, scheme);
     };
     let published = |variant: Variant| variant.with(Coulomb { mu });
     match name {
-        SchemeName::Balanced => simulate::<D, _>(run, plan, part, Balanced::first(law, film)),
-        SchemeName::EnergyStable => simulate::<D, _>(run, plan, part, EnergyStable::first(law, film)),
-        SchemeName::EnergyStable2 => simulate::<D, _>(run, plan, part, EnergyStable::second(law, film)),
-        SchemeName::Balanced2 => simulate::<D, _>(run, plan, part, Balanced::second(law, film)),
-        SchemeName::Verfahren1 => simulate::<D, _>(run, plan, part, published(VERFAHREN_1)),
-        SchemeName::Verfahren2 => simulate::<D, _>(run, plan, part, published(VERFAHREN_2)),
-        SchemeName::Verfahren3 => simulate::<D, _>(run, plan, part, published(VERFAHREN_3)),
-        SchemeName::Verfahren4 => simulate::<D, _>(run, plan, part, published(VERFAHREN_4)),
-        SchemeName::Verfahren5 => simulate::<D, _>(run, plan, part, published(VERFAHREN_5)),
+        SchemeName::Balanced => simulate::<D, _>(run, chute, part, Balanced::first(law, film)),
+        SchemeName::EnergyStable => simulate::<D, _>(run, chute, part, EnergyStable::first(law, film)),
+        SchemeName::EnergyStable2 => simulate::<D, _>(run, chute, part, EnergyStable::second(law, film)),
+        SchemeName::Balanced2 => simulate::<D, _>(run, chute, part, Balanced::second(law, film)),
+        SchemeName::Verfahren1 => simulate::<D, _>(run, chute, part, published(VERFAHREN_1)),
+        SchemeName::Verfahren2 => simulate::<D, _>(run, chute, part, published(VERFAHREN_2)),
+        SchemeName::Verfahren3 => simulate::<D, _>(run, chute, part, published(VERFAHREN_3)),
+        SchemeName::Verfahren4 => simulate::<D, _>(run, chute, part, published(VERFAHREN_4)),
+        SchemeName::Verfahren5 => simulate::<D, _>(run, chute, part, published(VERFAHREN_5)),
     }
 }
 
 fn simulate<const D: usize, S>(
     run: &RunPlan,
-    plan: &Plan,
+    (plan, laid): Chuted,
     part: Part,
     scheme: S,
 ) -> Result<Box<dyn Run>, StartError>
@@ -77,7 +82,7 @@ where
 {
     let (grid, film) = (grid::<D>(plan, part), plan.scheme.film);
     fits(grid.cells.iter().product(), Simulation::<D, S>::bytes_per_cell(false))?;
-    let plane = Plane::of(&grid, Arc::new(ChuteDomain));
+    let plane = Plane::of(&grid, Arc::new(ChuteDomain { remarks: laid.remarks.clone() }));
     let ground = |index: [usize; D]| ground_at(plan, part.from[0] + index[0]);
     let (columns, initial) = (plan.grid.cells()[0], &plan.initial);
     let state = |index: [usize; D]| {
@@ -85,7 +90,7 @@ where
         let n = row * columns + part.from[0] + index[0];
         let u = [initial.velocity_x.at(n), initial.velocity_y.at(n)];
         let h = initial.thickness.at(n);
-        Flow { h, q: std::array::from_fn(|k| h * u[k]) }
+        Flow { h: laid.with(n, h), q: std::array::from_fn(|k| h * u[k]) }
     };
     let simulation = Simulation::new(scheme, grid, step_size(run), ground, state)?;
     let Material { pressure_coefficient, passive_coefficient, .. } = plan.material;

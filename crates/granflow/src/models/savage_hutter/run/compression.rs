@@ -7,7 +7,7 @@ use granflow_model::savage_hutter::Flow;
 use granflow_model::savage_hutter::earth_pressure::{Mass, excess, stresses};
 use granflow_model::savage_hutter::ground::Bed;
 use granflow_model::scheme::{Boundary, Scheme};
-use std::collections::BTreeSet;
+use std::collections::BTreeMap;
 
 /// What compression adds to the earth pressure of a scheme.
 pub(super) struct Compression {
@@ -15,8 +15,6 @@ pub(super) struct Compression {
     excess: f64,
     /// A thinner layer is held.
     film: f64,
-    /// The time up to which it has acted.
-    until: f64,
 }
 
 /// So much of the largest momentum of a line is left by rounding where none is to be left.
@@ -34,7 +32,7 @@ struct Wet<const D: usize> {
 impl Compression {
     /// Of a mass with these coefficients of stretching and compression, if they differ.
     pub fn of([active, passive]: [f64; 2], film: f64) -> Option<Self> {
-        (passive > active).then(|| Compression { excess: passive / active - 1.0, film, until: 0.0 })
+        (passive > active).then(|| Compression { excess: passive / active - 1.0, film })
     }
 
     /// A cell as a line along `axis` sees it, if it is more than a film.
@@ -57,19 +55,54 @@ impl Compression {
         Some(Wet { index, state, along, head: ground.head() })
     }
 
+    /// The wet cells side by side in which something moves, of the line along `axis` from `begin`; `moving` are the places of its
+    /// moving cells, growing.
+    fn runs<const D: usize, S>(
+        &self,
+        simulation: &Simulation<D, S>,
+        begin: [usize; D],
+        axis: usize,
+        moving: &[usize],
+    ) -> Vec<Vec<Wet<D>>>
+    where
+        S: Scheme<D, f64, State = Flow<D, f64>>,
+        S::Ground: Bed<D, f64>,
+    {
+        let wet = |at: usize| {
+            let mut index = begin;
+            index[axis] = at;
+            self.wet(simulation, index, axis)
+        };
+        let end = simulation.grid().cells[axis];
+        let (mut runs, mut seen) = (Vec::new(), 0);
+        for &at in moving {
+            if at < seen {
+                continue;
+            }
+            let Some(middle) = wet(at) else { continue };
+            let mut run: Vec<Wet<D>> = (0..at).rev().map_while(wet).collect();
+            run.reverse();
+            run.push(middle);
+            run.extend((at + 1..end).map_while(wet));
+            seen = run.last().map_or(end, |last| last.index[axis] + 1);
+            runs.push(run);
+        }
+        runs
+    }
+
     /// The states of wet cells side by side along `axis` after a step with dt/dx = `lambda`.
     fn pressed<const D: usize>(
         &self,
         grid: &Grid<D>,
-        cells: &[&Wet<D>],
+        cells: &[Wet<D>],
         (axis, lambda): (usize, f64),
     ) -> Vec<([usize; D], Flow<D, f64>)> {
-        let (first, last) = (cells[0], cells[cells.len() - 1]);
+        let (first, last) = (&cells[0], &cells[cells.len() - 1]);
         let ends = [first.index[axis] == 0, last.index[axis] + 1 == grid.cells[axis]];
         let walls = [0, 1].map(|side| ends[side] && grid.boundary[axis][side] == Boundary::Wall);
         let most =
             |a: &Wet<D>, b: &Wet<D>| excess(self.excess, [a.head, b.head], [a.state.h, b.state.h], lambda);
-        let of = |(k, cell): (usize, &&Wet<D>)| Mass {
+        let of = |(k, cell): (usize, &Wet<D>)| Mass {
             mass: cell.state.h / cell.along[axis],
             velocity: cell.state.velocity()[axis],
             most: cells.get(k + 1).map_or(0.0, |next| most(cell, next)),
@@ -98,33 +131,24 @@ where
     S: Scheme<D, f64, State = Flow<D, f64>>,
     S::Ground: Bed<D, f64>,
 {
-    fn act(&mut self, simulation: &mut Simulation<D, S>) {
-        let (time, dt) = (simulation.time(), simulation.time() - self.until);
+    fn act(&mut self, simulation: &mut Simulation<D, S>, dt: f64) {
         if dt <= 0.0 {
             return;
         }
-        self.until = time;
         let grid = *simulation.grid();
         for axis in 0..D {
             let lambda = dt / grid.size[axis];
-            let begins = simulation.of_moving(|mut index, _| {
-                index[axis] = 0;
-                Some(index)
-            });
+            let moving = simulation.of_moving(|index, here| (!here.state.is_still()).then_some(index));
+            let mut lines: BTreeMap<[usize; D], Vec<usize>> = BTreeMap::new();
+            for mut index in moving {
+                let at = std::mem::replace(&mut index[axis], 0);
+                lines.entry(index).or_default().push(at);
+            }
             let mut states = Vec::new();
-            for begin in begins.into_iter().collect::<BTreeSet<_>>() {
-                let line: Vec<_> = (0..grid.cells[axis])
-                    .map(|k| {
-                        let mut index = begin;
-                        index[axis] = k;
-                        self.wet(simulation, index, axis)
-                    })
-                    .collect();
-                for run in line.split(Option::is_none) {
-                    let run: Vec<&Wet<D>> = run.iter().flatten().collect();
-                    if run.iter().any(|cell| !cell.state.is_still()) {
-                        states.extend(self.pressed(&grid, &run, (axis, lambda)));
-                    }
+            for (begin, mut moving) in lines {
+                moving.sort_unstable();
+                for run in self.runs(simulation, begin, axis, &moving) {
+                    states.extend(self.pressed(&grid, &run, (axis, lambda)));
                 }
             }
             if !states.is_empty() {
@@ -134,11 +158,10 @@ where
     }
 
     fn save(&self) -> Vec<f64> {
-        vec![self.until]
+        Vec::new()
     }
 
     fn restore(&mut self, _simulation: &mut Simulation<D, S>, saved: &[f64]) -> bool {
-        self.until = saved[0];
-        true
+        saved.is_empty()
     }
 }

@@ -1,8 +1,11 @@
 //! What an avalanche would compute: material, bed, mass, pull.
 
-use super::chute::{self, Part};
+use super::chute::{self, Chuted, Part};
+use super::laid::Laid;
 #[cfg(feature = "geo")]
-use super::terrain::{self, Loaded};
+use super::loaded::{self, Loaded};
+#[cfg(feature = "geo")]
+use super::terrain;
 use crate::StartError;
 use crate::describe::{Line, axis, case, effort, range};
 use crate::inputs::Inputs;
@@ -34,9 +37,14 @@ pub(crate) fn chute(run: &RunPlan, plan: &OnChute, inputs: &Inputs) -> Result<Ve
     };
     let mut lines = case(run, material(&plan.material), &format!("{order}, film {:e}, ", plan.scheme.film));
     lines.push(threshold(run, ""));
-    let mass = Mass::of(plan);
+    let laid = Laid::of(plan, inputs)?;
+    let mass = Mass::of(plan, &laid);
     lines.extend(grid(plan, &mass));
-    lines.extend(start(run, &at_start(run, plan, inputs, &mass)?));
+    lines.extend(start(run, &at_start(run, (plan, &laid), inputs, &mass)?));
+    lines.extend(laid.remarks.iter().filter_map(|remark| {
+        let (kind, text) = remark.split_once(": ")?;
+        Some((if kind == "note" { "note" } else { "warning" }, text.to_owned()))
+    }));
     Ok(lines)
 }
 
@@ -47,7 +55,7 @@ pub(crate) fn terrain(run: &RunPlan, plan: &OnTerrain, inputs: &Inputs) -> Resul
         TerrainScheme::EnergyStable | TerrainScheme::Balanced => "first order",
         TerrainScheme::EnergyStable2 | TerrainScheme::Balanced2 => "second order",
     };
-    let mut loaded = terrain::load(run, plan, inputs, None)?;
+    let mut loaded = loaded::load(run, plan, inputs, None)?;
     let mut lines = case(run, material(&loaded.material), &format!("{order}, film {:e}, ", plan.scheme.film));
     lines.push(threshold(run, " m"));
     lines.extend(mountain(&loaded, plan.material.gravity));
@@ -146,15 +154,16 @@ const TOGETHER: usize = 1 << 18;
 
 /// The start of a run on a chute; of a large one part by part, each with a cell more on every side. At a wall or a periodic edge
 /// the pull is then that at an open one.
-fn at_start(run: &RunPlan, plan: &OnChute, inputs: &Inputs, mass: &Mass) -> Result<Start, StartError> {
+fn at_start(run: &RunPlan, chute: Chuted, inputs: &Inputs, mass: &Mass) -> Result<Start, StartError> {
+    let (plan, laid) = chute;
     let [columns, rows] = plan.grid.cells();
     let cells = columns * rows;
     // Where a gauge or a section lies only the whole can say.
     if cells <= TOGETHER || !run.watched.is_empty() {
-        return Start::of((run, inputs), &mut *chute::start(run, plan)?, 0.0, PICTURES[0], |_| true);
+        return Start::of((run, inputs), &mut *chute::start(run, plan, laid)?, 0.0, PICTURES[0], |_| true);
     }
     let look = |part: Part, within: &dyn Fn(usize) -> bool| -> Result<Start, StartError> {
-        Start::of((run, inputs), &mut *chute::part(run, plan, part)?, 0.0, PICTURES[0], within)
+        Start::of((run, inputs), &mut *chute::part(run, chute, part)?, 0.0, PICTURES[0], within)
     };
     let few = look(Part { from: [0; 2], cells: [columns.min(3), rows.min(3)] }, &|_| true)?.size;
     fits(cells, few.setup as usize)?;
@@ -193,10 +202,11 @@ struct Mass {
 }
 
 impl Mass {
-    fn of(plan: &OnChute) -> Mass {
+    fn of(plan: &OnChute, laid: &Laid) -> Mass {
         let (mut mass, mut sum) =
             (Mass { range: [f64::INFINITY, 0.0], volume: 0.0, wet: 0, thick: 0 }, CompensatedSum::default());
-        for h in plan.initial.thickness.iter() {
+        for (cell, own) in plan.initial.thickness.iter().enumerate() {
+            let h = laid.with(cell, own);
             mass.range = [mass.range[0].min(h), mass.range[1].max(h)];
             mass.wet += usize::from(h > 0.0);
             mass.thick += usize::from(h > plan.scheme.film);
@@ -304,7 +314,7 @@ fn mountain(loaded: &Loaded, gravity: f64) -> Vec<Line> {
     let [x, y] = step_at;
     let mut lines = vec![
         ("terrain", format!("{size}, {missing} without elevation ({:.1} %)", share(*missing, all))),
-        ("", terrain::described(bed.crs.as_ref())),
+        ("", loaded::described(bed.crs.as_ref())),
         ("", format!("{low:.1} to {high:.1} m, largest step between cells {step:.1} m at ({x:.1}, {y:.1})")),
         (
             "steep",

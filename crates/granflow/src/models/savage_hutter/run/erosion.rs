@@ -28,8 +28,6 @@ pub(super) struct Erodible {
     taken: Vec<f64>,
     /// Elevation of the bed at the start \[m\], where it sinks; empty where it does not.
     level: Vec<f64>,
-    /// The time up to which the flow has picked up what it can; the volume of the layer that it has \[m^3\].
-    until: f64,
 }
 
 impl Erodible {
@@ -49,7 +47,6 @@ impl Erodible {
             level: if entrainment.lower_bed { bed.values.clone() } else { Vec::new() },
             taken: vec![0.0; whole.len()],
             whole,
-            until: 0.0,
         }
     }
 
@@ -105,12 +102,10 @@ impl<S> BetweenSteps<2, S> for Erodible
 where
     S: Scheme<2, f64, State = Flow<2, f64>, Ground = Terrain<2, f64>>,
 {
-    fn act(&mut self, simulation: &mut Simulation<2, S>) {
-        let (time, dt) = (simulation.time(), simulation.time() - self.until);
+    fn act(&mut self, simulation: &mut Simulation<2, S>, dt: f64) {
         if dt <= 0.0 {
             return;
         }
-        self.until = time;
         let columns = simulation.grid().cells[0];
         let size = simulation.grid().size[0];
         let taken = simulation.of_moving(|[i, j], here| {
@@ -130,13 +125,11 @@ where
     }
 
     fn save(&self) -> Vec<f64> {
-        std::iter::once(self.until).chain(self.taken.iter().copied()).collect()
+        self.taken.clone()
     }
 
     fn restore(&mut self, simulation: &mut Simulation<2, S>, saved: &[f64]) -> bool {
-        let [until, taken @ ..] = saved else { return false };
-        self.until = *until;
-        self.taken.copy_from_slice(taken);
+        self.taken.copy_from_slice(saved);
         self.lower(simulation, (0..self.whole.len()).filter(|cell| self.whole[*cell] > 0.0));
         true
     }

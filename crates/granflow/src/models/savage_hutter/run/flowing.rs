@@ -22,6 +22,8 @@ pub struct Flowing<const D: usize, S: Scheme<D, f64>> {
     on_terrain: bool,
     /// What acts between two steps, in this order.
     between: Vec<Box<dyn BetweenSteps<D, S>>>,
+    /// The time up to which it has acted.
+    until: f64,
     /// mu, if it was chosen by the volume.
     chosen: Option<f64>,
 }
@@ -30,7 +32,7 @@ impl<const D: usize, S: Scheme<D, f64>> Flowing<D, S> {
     /// Under this name; a thinner layer than `film` is held. The threshold is the one of a case that says none.
     pub fn new(name: &'static str, film: f64, on_terrain: bool) -> Self {
         let threshold = if on_terrain { terrain::THRESHOLD } else { chute::THRESHOLD };
-        Flowing { name, film, threshold, on_terrain, between: Vec::new(), chosen: None }
+        Flowing { name, film, threshold, on_terrain, between: Vec::new(), until: 0.0, chosen: None }
     }
     /// The same, where a layer counts in peaks, times and deposit if it is thicker than `threshold` (units of
     /// the thickness, normal to the bed).
@@ -88,16 +90,26 @@ where
         self.between.iter().map(|one| one.next(simulation)).fold(f64::INFINITY, f64::min)
     }
     fn bring(&mut self, simulation: &mut Simulation<D, S>) {
-        self.between.iter_mut().for_each(|one| one.act(simulation));
+        let dt = simulation.time() - self.until;
+        self.until = simulation.time();
+        self.between.iter_mut().for_each(|one| one.act(simulation, dt));
     }
     fn came(&self) -> f64 {
         self.between.iter().map(|one| one.came()).fold(0.0, f64::max)
     }
     fn save(&self) -> Vec<f64> {
-        self.between.iter().flat_map(|one| one.save()).collect()
+        if self.between.is_empty() {
+            return Vec::new();
+        }
+        std::iter::once(self.until).chain(self.between.iter().flat_map(|one| one.save())).collect()
     }
     fn restore(&mut self, simulation: &mut Simulation<D, S>, saved: &[f64]) -> bool {
-        let mut rest = saved;
+        if self.between.is_empty() {
+            return saved.is_empty();
+        }
+        let [until, rest @ ..] = saved else { return false };
+        self.until = *until;
+        let mut rest = rest;
         let fits = self.between.iter_mut().all(|one| {
             let Some((own, others)) = rest.split_at_checked(one.save().len()) else { return false };
             rest = others;

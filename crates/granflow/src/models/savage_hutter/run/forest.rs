@@ -36,7 +36,7 @@ where
     S: Scheme<2, f64, State = Flow<2, f64>, Forcing = Parameters<f64>>,
     S::Ground: Bed<2, f64>,
 {
-    fn act(&mut self, simulation: &mut Simulation<2, S>) {
+    fn act(&mut self, simulation: &mut Simulation<2, S>, _dt: f64) {
         let (time, columns) = (simulation.time(), simulation.grid().cells[0]);
         let broken = simulation.of_moving(|[i, j], here| {
             let pressure = self.density * here.ground.square(here.state.velocity());

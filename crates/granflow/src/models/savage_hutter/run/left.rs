@@ -1,7 +1,7 @@
 //! What another run left, as a release.
 
 #[cfg(feature = "files")]
-use super::super::stored;
+use super::super::{ended, stored};
 use crate::StartError;
 use crate::inputs::Inputs;
 use granflow_geo::Remark;
@@ -19,19 +19,14 @@ pub(super) fn left_by(
     bed: &Raster,
     remarks: &mut Vec<Remark>,
 ) -> Result<(Sparse, Option<Crs>), StartError> {
-    let unusable = |problem: String| StartError::Result { path: path.to_owned(), problem };
+    let unusable =
+        |problem: String| StartError::Result { path: path.to_owned(), place: "a terrain", problem };
     if inputs.holds(path) {
         return Err(unusable("it is in memory, and what a run left is read from the disk".to_owned()));
     }
     let last = stored::last(path).map_err(unusable)?;
-    let (name, time) = (path.display(), last.time);
-    remarks.push(if last.rests {
-        Remark::Note(format!("{name}: what lay at rest at its end, t = {time} s, is released"))
-    } else {
-        Remark::Warning(format!(
-            "{name}: its mass still moved at its end, t = {time} s; here it starts at rest (--resume goes on with its speed)"
-        ))
-    });
+    let (rests, text) = ended::remark(path, &format!("{} s", last.time), last.rests);
+    remarks.push(if rests { Remark::Note(text) } else { Remark::Warning(text) });
     Ok((release::carried(path, &last.volume, bed)?, last.volume.crs))
 }
 

@@ -6,6 +6,7 @@ use granflow_case::RunPlan;
 use granflow_case::avalanche::{FOREST, InSpace, Material, Place};
 use granflow_geo::Remark;
 use granflow_geo::raster::{Crs, Raster, Reading};
+use granflow_geo::release::ReleaseError;
 use granflow_model::savage_hutter::friction::Parameters;
 
 /// The numbers of the law in the cells of a mountain.
@@ -129,7 +130,14 @@ fn values(
         Place::Polygons(path, attribute, elsewhere) => {
             let layer = inputs.layer(path)?;
             remarks.extend(layer.notes(bed));
-            (layer.zones(attribute, bed)?, *elsewhere)
+            let unusable = |error: ReleaseError| match error {
+                ReleaseError::Attribute { .. } | ReleaseError::Value { .. } => {
+                    let cure = "name one of its attributes that holds numbers, as in attribute = \"mu\"";
+                    StartError::from(run.fault(&format!("{key}.attribute"), error.to_string(), cure))
+                }
+                _ => StartError::from(error),
+            };
+            (layer.zones(attribute, bed).map_err(unusable)?, *elsewhere)
         }
         Place::ByElevation(classes) => {
             return Ok(bed.values.iter().map(|level| classes.at(*level)).collect());

@@ -102,7 +102,7 @@ where
     S: Scheme<D, f64, State = Flow<D, f64>>,
     S::Ground: Bed<D, f64>,
 {
-    fn act(&mut self, simulation: &mut Simulation<D, S>) {
+    fn act(&mut self, simulation: &mut Simulation<D, S>, _dt: f64) {
         let (time, before) = (simulation.time(), simulation.poured());
         self.release(simulation, time);
         for inflow in &mut self.inflows {

@@ -1,0 +1,134 @@
+//! What another run left on a chute, under the layer of the next one.
+
+use crate::StartError;
+use crate::inputs::Inputs;
+use granflow_case::chute::Plan;
+
+/// The thickness in every cell at rest under the layer of the case, x fastest.
+#[derive(Default)]
+pub(crate) struct Laid {
+    thickness: Vec<f64>,
+    /// What a user should know of it, beginning with `note: ` or `warning: `.
+    pub remarks: Vec<String>,
+}
+
+impl Laid {
+    /// What the case names; nothing where it names nothing.
+    #[cfg(feature = "files")]
+    pub fn of(plan: &Plan, inputs: &Inputs) -> Result<Laid, StartError> {
+        plan.initial
+            .result
+            .as_deref()
+            .map_or_else(|| Ok(Laid::default()), |path| read::laid(path, plan, inputs))
+    }
+
+    /// Nothing: a result is read with the feature `files`.
+    #[cfg(not(feature = "files"))]
+    pub fn of(plan: &Plan, _: &Inputs) -> Result<Laid, StartError> {
+        match plan.initial.result {
+            None => Ok(Laid::default()),
+            Some(_) => Err(StartError::Feature { feature: "files" }),
+        }
+    }
+
+    /// The thickness in cell number `cell` together with that of the case, `own`.
+    pub fn with(&self, cell: usize, own: f64) -> f64 {
+        self.thickness.get(cell).map_or(own, |laid| laid + own)
+    }
+}
+
+#[cfg(feature = "files")]
+mod read {
+    use super::super::super::ended::{self, Ended};
+    use super::{Inputs, Laid, Plan, StartError};
+    use granflow_case::Axis;
+    use granflow_model::real::CompensatedSum;
+    use std::path::Path;
+
+    /// The share of the volume that may lie beyond the grid, by rounding.
+    const LOST: f64 = 1e-9;
+
+    pub(super) fn laid(path: &Path, plan: &Plan, inputs: &Inputs) -> Result<Laid, StartError> {
+        let unusable = |problem| StartError::Result { path: path.to_owned(), place: "a chute", problem };
+        if inputs.holds(path) {
+            let problem = "it is in memory, and what a run left is read from the disk";
+            return Err(unusable(problem.to_owned()));
+        }
+        let ended = ended::open(path, false).map_err(unusable)?;
+        let thickness = thickness(&ended, plan).map_err(unusable)?;
+        let (rests, text) = ended::remark(path, &ended.time.to_string(), ended.rests);
+        let kind = if rests { "note" } else { "warning" };
+        Ok(Laid { thickness, remarks: vec![format!("{kind}: {text}")] })
+    }
+
+    /// The last thickness of a run on the cells of the plan: by number where the cells are the same, else by area, so that the
+    /// volume stays.
+    fn thickness(ended: &Ended, plan: &Plan) -> Result<Vec<f64>, String> {
+        let file = &ended.file;
+        let axes: Vec<&Axis> = std::iter::once(&plan.grid.x).chain(&plan.grid.y).collect();
+        let dimensions = 1 + usize::from(file.has("y"));
+        if dimensions != axes.len() {
+            return Err(format!("it has {dimensions} dimensions, this case {}", axes.len()));
+        }
+        let values = file.instant("thickness", ended.instant, dimensions)?;
+        let names = ["x", "y"];
+        let centres =
+            names[..dimensions].iter().map(|name| file.whole(name)).collect::<Result<Vec<_>, _>>()?;
+        if values.len() != centres.iter().map(Vec::len).product::<usize>() {
+            return Err("its thickness does not fit its coordinates".to_owned());
+        }
+        if let Some(wrong) = values.iter().find(|h| !(0.0..=f64::MAX).contains(*h)) {
+            return Err(format!("it has a thickness of {wrong}"));
+        }
+        let total = sum(&values);
+        if total == 0.0 {
+            return Err("nothing lay on it at its end".to_owned());
+        }
+        let same = |(own, centres): (&&Axis, &Vec<f64>)| {
+            (0..own.cells).map(|k| own.centre(k)).eq(centres.iter().copied())
+        };
+        if axes.iter().zip(&centres).all(same) {
+            return Ok(values);
+        }
+        let shares = axes.iter().zip(&centres).map(|(own, centres)| overlaps(own, centres));
+        let shares = shares.collect::<Result<Vec<_>, _>>()?;
+        let along = &shares[0];
+        let whole = vec![vec![(0, 1.0)]];
+        let across = shares.get(1).unwrap_or(&whole);
+        let row = |from: usize, cell: &[(usize, f64)]| -> f64 {
+            cell.iter().map(|(k, share)| share * values[from * centres[0].len() + k]).sum()
+        };
+        let cell = |y: &[(usize, f64)], x: &[(usize, f64)]| -> f64 {
+            y.iter().map(|(j, share)| share * row(*j, x)).sum()
+        };
+        let carried: Vec<f64> = across.iter().flat_map(|y| along.iter().map(|x| cell(y, x))).collect();
+        let sizes: f64 =
+            axes.iter().zip(&centres).map(|(own, centres)| own.width() / (centres[1] - centres[0])).product();
+        let lost = 1.0 - sum(&carried) * sizes / total;
+        if lost > LOST {
+            return Err(format!("{:.4} % of what lay on it lies beyond the grid of this case", 100.0 * lost));
+        }
+        Ok(carried)
+    }
+
+    fn sum(values: &[f64]) -> f64 {
+        let mut sum = CompensatedSum::default();
+        values.iter().for_each(|value| sum.add(*value));
+        sum.value()
+    }
+
+    /// For each cell of an axis the cells with these centres that overlap it, each with the share of the own cell that it covers.
+    fn overlaps(own: &Axis, centres: &[f64]) -> Result<Vec<Vec<(usize, f64)>>, String> {
+        let width = centres.get(1).map(|second| second - centres[0]).filter(|width| *width > 0.0);
+        let width = width.ok_or("it has fewer than two cells along an axis")?;
+        let (low, size) = (centres[0] - 0.5 * width, own.width());
+        let place = |edge: f64| ((edge - low) / width).clamp(0.0, centres.len() as f64);
+        let cells = (0..own.cells).map(|k| {
+            let [from, to] = [k, k + 1].map(|k| place(own.from + k as f64 * size));
+            let touched = from.floor() as usize..to.ceil() as usize;
+            let share = |j: usize| (to.min((j + 1) as f64) - from.max(j as f64)).max(0.0) * width / size;
+            touched.map(|j| (j, share(j))).collect()
+        });
+        Ok(cells.collect())
+    }
+}
