@@ -38,6 +38,8 @@ pub use quantity::{At, Kind, Quantity, Units};
 #[cfg(feature = "files")]
 pub use result_file::ResultFile;
 #[cfg(feature = "figures")]
+pub(crate) use view::DURATIONS;
+#[cfg(feature = "figures")]
 pub use view::View;
 #[cfg(feature = "figures")]
 pub use watched::watched;

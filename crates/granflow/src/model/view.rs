@@ -2,6 +2,7 @@
 
 use super::along::Along;
 use super::quantity::Units;
+use crate::output::figures::short;
 use crate::output::ledger::Entry;
 use crate::output::lines::Table;
 use std::borrow::Cow;
@@ -31,9 +32,30 @@ pub struct View<'a> {
     pub watched: [Option<Table>; 2],
     /// What passed along the path, where that is known.
     pub along: Option<Along>,
+    /// The thresholds of the maps of durations, by the names of these maps.
+    pub thresholds: Vec<(&'static str, f64)>,
 }
 
+/// The maps of durations, and what each counts: its name, and its SI unit.
+pub(crate) const DURATIONS: [(&str, &str, &str); 3] = [
+    ("duration_thickness", "thickness", "m"),
+    ("duration_speed", "speed", "m/s"),
+    ("duration_pressure", "pressure", "kPa"),
+];
+
 impl View<'_> {
+    /// What a map of durations shows, as "time above 0.5 m"; in the papers' scaling "time above thickness 0.5".
+    #[must_use]
+    pub fn time_above(&self, map: &str) -> Option<String> {
+        let (_, quantity, unit) = DURATIONS.into_iter().find(|(name, ..)| *name == map)?;
+        let threshold = self.thresholds.iter().find(|(name, _)| *name == map).map(|(_, value)| short(*value));
+        Some(match (threshold, self.unit(unit)) {
+            (None, _) => format!("time above the {quantity}"),
+            (Some(threshold), "") => format!("time above {quantity} {threshold}"),
+            (Some(threshold), unit) => format!("time above {threshold} {unit}"),
+        })
+    }
+
     /// A series by its name; empty if it is not shown.
     #[must_use]
     pub fn series(&self, name: &str) -> &[Vec<f64>] {

@@ -1,7 +1,7 @@
 //! What the figures need of a run, from the run itself or from its files.
 
 use super::{FilesError, Finished};
-use crate::model::{Along, Domain, Kind, Model, Pictures, Plane, ResultFile, View, save_all};
+use crate::model::{Along, DURATIONS, Domain, Kind, Model, Pictures, Plane, ResultFile, View, save_all};
 use crate::models::MODELS;
 use crate::output;
 use crate::output::figures::short;
@@ -78,6 +78,7 @@ impl<'r> Story<'r> {
             ledger: run.ledger.clone(),
             watched,
             along: None,
+            thresholds: thresholds(|name| summary.extra(name)),
         };
         view.along = along(run, &view, &mut frames)?;
         Ok(Story { view, domain: plane.domain.clone() })
@@ -133,6 +134,7 @@ impl<'r> Story<'r> {
             ledger,
             watched,
             along,
+            thresholds: thresholds(|name| file.text(name).parse().ok()),
             x: plane.x,
             y: plane.y,
         };
@@ -147,6 +149,11 @@ impl<'r> Story<'r> {
         let Some(pictures) = self.domain.model().pictures else { return Ok(Vec::new()) };
         Ok(save_all(&pictures.figures(&self.view, &*self.domain), folder)?)
     }
+}
+
+/// The thresholds of the maps of durations, each from what is kept under its name.
+fn thresholds(kept: impl Fn(&str) -> Option<f64>) -> Vec<(&'static str, f64)> {
+    DURATIONS.into_iter().filter_map(|(name, ..)| Some((name, kept(&format!("{name}_threshold"))?))).collect()
 }
 
 /// What passed along the path that the case names, else along that which is found, where mass flows on a map.

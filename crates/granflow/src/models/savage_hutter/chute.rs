@@ -74,21 +74,22 @@ pub(super) fn line<'a>(view: &'a View<'a>) -> Vec<Drawing<'a>> {
 
 /// For how long thresholds were exceeded, along x.
 fn durations<'a>(view: &'a View<'a>) -> Option<Drawing<'a>> {
-    let named = |(name, label)| Some((label, view.map(name)?));
-    let maps = [("duration_thickness", "above the thickness"), ("duration_speed", "above the speed")];
-    let maps: Vec<(&str, &[f64])> = maps.into_iter().filter_map(named).collect();
+    let named = |name| Some((view.time_above(name)?, view.map(name)?));
+    let maps: Vec<(String, &[f64])> =
+        ["duration_thickness", "duration_speed"].into_iter().filter_map(named).collect();
     if maps.is_empty() {
         return None;
     }
     let caption = "For how long the thickness and the speed were above the thresholds of output.durations.";
     Some(Drawing::new("durations", caption, move || {
-        let curve = |&(name, y): &(&'a str, &'a [f64])| Curve { name, x: &view.x, y, ..Default::default() };
+        let curves: Vec<Curve> =
+            maps.iter().map(|&(ref name, y)| Curve { name, x: &view.x, y, ..Default::default() }).collect();
         Profiles {
             title: &view.title,
             subtitle: &view.subtitle,
             x: Axis::new("x", ""),
             y: Axis::new("time above", ""),
-            curves: &maps.iter().map(curve).collect::<Vec<_>>(),
+            curves: &curves,
             ..Default::default()
         }
         .draw()
@@ -157,14 +158,13 @@ pub(super) fn plane<'a>(view: &'a View<'a>) -> Vec<Drawing<'a>> {
     let peaks = [
         ("peak_thickness", "greatest thickness"),
         ("peak_speed", "greatest speed"),
-        ("duration_thickness", "time above the thickness"),
-        ("duration_speed", "time above the speed"),
+        ("duration_thickness", "time above"),
+        ("duration_speed", "time above"),
     ];
-    maps.extend(
-        peaks.iter().filter_map(|(name, label)| {
-            Some((*name, *label, format!("{label} over the run"), view.map(name)?))
-        }),
-    );
+    maps.extend(peaks.iter().filter_map(|(name, label)| {
+        let what = view.time_above(name).unwrap_or_else(|| format!("{label} over the run"));
+        Some((*name, *label, what, view.map(name)?))
+    }));
     for (name, label, what, map) in maps {
         let window = window.clone();
         let subtitle = format!("{what}; {}", view.subtitle);

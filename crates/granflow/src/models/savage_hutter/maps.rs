@@ -98,7 +98,7 @@ impl<'a> Background<'a> {
 /// What one map shows over the mountain.
 struct Layer<'s> {
     name: &'static str,
-    label: &'static str,
+    label: String,
     unit: &'static str,
     colours: Colours,
     values: &'s [f64],
@@ -145,11 +145,11 @@ impl Layer<'_> {
     }
 
     /// Its map of what is shown, without words and relief.
-    fn map<'a>(&self, shown: &'a [f64], ground: &'a Background, outlines: &'a [Outline]) -> Map<'a> {
+    fn map<'a>(&'a self, shown: &'a [f64], ground: &'a Background, outlines: &'a [Outline]) -> Map<'a> {
         let most = if self.limit > 0.0 { self.limit } else { 1.0 };
         let overlay = Overlay {
             values: shown,
-            quantity: Axis::new(self.label, self.unit).over(0.0, most),
+            quantity: Axis::new(&self.label, self.unit).over(0.0, most),
             threshold: self.threshold(),
             colours: self.colours,
         };
@@ -171,14 +171,16 @@ const SHOWN: [(&str, &str, &str, Colours); 10] = [
     ("forest_broken", "time at which the forest broke", "s", Colours::Viridis),
 ];
 
-/// The layers of the maps that there are, each with its range.
+/// The layers of the maps that there are, each with its range; `label` says what a map shows, where it knows more than its name.
 fn layers<'a>(
     map: &dyn Fn(&str) -> Option<&'a [f64]>,
     peak: &'a [f64],
     terrain: &TerrainDomain,
+    label: &dyn Fn(&str) -> Option<String>,
 ) -> Vec<Layer<'a>> {
-    let layer = |(name, label, unit, colours): (&'static str, &'static str, &'static str, Colours)| {
+    let layer = |(name, usual, unit, colours): (&'static str, &'static str, &'static str, Colours)| {
         let values = map(name)?;
+        let label = label(name).unwrap_or_else(|| usual.to_owned());
         let thickness = if name == "deposit" { values } else { peak };
         let (drawn, most, limit) = (terrain.drawn(), 0.0, 0.0);
         Some(Layer { name, label, unit, colours, values, thickness, drawn, most, limit }.ranged())
@@ -194,18 +196,18 @@ pub(super) fn styles<'a>(
     let Some(peak) = map("peak_thickness") else { return Vec::new() };
     let style = |layer: Layer| {
         let high = if layer.limit > 0.0 { layer.limit } else { 1.0 };
-        let (label, unit) = (layer.label.to_owned(), layer.unit.to_owned());
+        let (label, unit) = (layer.label.clone(), layer.unit.to_owned());
         let above = layer.threshold();
         (layer.name, Style { label, unit, colours: layer.colours, above, range: [0.0, high] })
     };
-    layers(map, peak, terrain).into_iter().map(style).collect()
+    layers(map, peak, terrain, &|_| None).into_iter().map(style).collect()
 }
 
 /// All figures of a run on a mountain.
 pub(super) fn figures<'a>(view: &'a View<'a>, terrain: &'a TerrainDomain) -> Vec<Drawing<'a>> {
     let Some(peak) = view.map("peak_thickness") else { return Vec::new() };
     let ground = Arc::new(Background { path: path(view, terrain), ..Background::of(view, terrain) });
-    let layers = layers(&|name| view.map(name), peak, terrain);
+    let layers = layers(&|name| view.map(name), peak, terrain, &|name| view.time_above(name));
     // Before the maps are drawn side by side: most of them show the same box of the mountain.
     let relief = layers
         .first()
@@ -264,10 +266,13 @@ fn map<'a>(
     ground: Arc<Background<'a>>,
     relief: Arc<Option<Relief>>,
 ) -> Drawing<'a> {
-    let Layer { name, label, unit, drawn, most, limit, .. } = layer;
+    let Layer { name, unit, drawn, most, limit, .. } = layer;
+    let label = layer.label.clone();
     let clipped = if limit < most { ", colours end at the value that 0.2 % of the cells exceed" } else { "" };
     let of = if name == "deposit" { "where it is" } else { "where the flow was" };
-    let what = format!("{label}, largest {} {unit}{clipped}", short(most));
+    let nowhere = !layer.shown().iter().any(|value| *value > layer.threshold());
+    let largest = format!("largest {} {unit}{clipped}", short(most));
+    let what = format!("{label}, {}", if nowhere { "nowhere" } else { &largest });
     let subtitle = format!("{what}; {}", view.subtitle);
     let lines = "; dashed: the edge of all that was reached, and the path of the section";
     let lines = if name == "deposit" { lines } else { "" };
