@@ -136,7 +136,7 @@ export function mountain(client, place) {
     relief.colour(field, { scale, most, least }, rings.map(ring => ring.map(pointOf)), gauge ? pointOf(gauge.at) : null)
     // Words are read slower than a picture is seen, and cost more to draw.
     const now = performance.now()
-    if (player.playing && now - spoken < 200) return
+    if (player.playing && !player.ended && now - spoken < 200) return
     spoken = now
     legend.style.setProperty('--scale', gradient(scale))
     legend.textContent = `${words}: 0 to ${fixed(most)} ${unit}`
