@@ -97,7 +97,7 @@ fn the_silo() {
     assert!(matches!(material.law, AnyLaw::Coulomb(law) if law.mu == tan));
     assert_eq!((silo.epsilon, silo.eta), (0.4, 1.0));
     assert!((0..240).all(|column| (silo.columns.zeta(column), silo.columns.kappa(column)) == (0.0, 0.0)));
-    let InitialState { thickness: h, velocity_x, velocity_y } = silo.initial;
+    let InitialState { thickness: h, velocity_x, velocity_y, result: _ } = silo.initial;
     assert!(velocity_x.iter().chain(velocity_y.iter()).eq([0.0; 480]));
     let h: Vec<f64> = h.iter().collect();
     assert_eq!(h.iter().filter(|h| **h == 2.3).count(), 40);

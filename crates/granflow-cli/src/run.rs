@@ -77,13 +77,17 @@ pub const SET_UP: &str = "reading the files of the case and setting it up";
 fn attempt(case: Checked, options: &RunOptions, stop: &AtomicBool) -> Result<Finished, RunError> {
     let (quiet, ends) = (options.quiet, case.plan().ends);
     let mut progress = Progress::new(quiet, case.plan().ends.time);
-    let notice: fn(&str) = if quiet { |_| () } else { |text| tell(&format!("note: {text}\n")) };
+    let notice = |text: &str| {
+        if !quiet {
+            tell(&format!("note: {text}\n"));
+        }
+    };
     let options = Options {
         directory: options.directory(case.plan().source_name()),
         threads: options.threads.map_or(0, NonZeroUsize::get),
         resume: options.resume,
         command: command(),
-        notice,
+        notice: &notice,
     };
     let mut setup = Some(LongWork::new(quiet, SET_UP));
     let mut writing = None;

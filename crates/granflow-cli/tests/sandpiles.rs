@@ -221,7 +221,7 @@ fn a_source_that_goes_round_leaves_a_hill_with_a_bowl() {
 /// Computes a case by the library into `directory`, interrupted after step `stop` if there is one.
 fn compute(case: &Case, directory: &Path, resume: bool, stop: Option<u64>) -> granflow::results::Finished {
     let options =
-        Options { directory: directory.into(), threads: 1, resume, command: "test".into(), notice: |_| () };
+        Options { directory: directory.into(), threads: 1, resume, command: "test".into(), notice: &|_| () };
     let interrupt = AtomicBool::new(false);
     let mut report = |run: &dyn Run| {
         if Some(run.steps()) == stop {

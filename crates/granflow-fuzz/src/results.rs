@@ -47,7 +47,7 @@ fn compute(text: &str) -> Left {
         threads: 1,
         resume: false,
         command: String::new(),
-        notice: |_| (),
+        notice: &|_| (),
     };
     checked.compute(&options, &AtomicBool::new(false), &mut |_| ()).expect("it is computed");
     Left { origin, folder }

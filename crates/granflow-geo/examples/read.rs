@@ -32,10 +32,10 @@ fn main() {
 fn raster(file: &str, crs: Option<&str>) -> Result<String, Box<dyn Error>> {
     let crs = crs.map(Crs::parse).transpose()?;
     let Reading { raster, notes, .. } = Reading::of(Path::new(file), crs.as_ref())?;
-    let Raster { columns, rows, west, south, cell, values, crs } = raster;
+    let Raster { columns, rows, west, south, cell, values, crs } = &*raster;
     let notes: Vec<String> = notes.iter().map(ToString::to_string).collect();
     let values: Vec<Option<f64>> = values.iter().map(|z| (!z.is_nan()).then_some(*z)).collect();
-    let crs = crs.map(|crs| crs.describe());
+    let crs = crs.as_ref().map(Crs::describe);
     Ok(serde_json::json!({
         "columns": columns, "rows": rows, "west": west, "south": south, "cell": cell, "values": values, "crs": crs,
         "notes": notes,

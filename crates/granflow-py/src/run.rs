@@ -70,7 +70,7 @@ pub fn run<'py>(
             None => checked.compute_in_memory(threads, &stop, &mut report).map(Left::InMemory),
             Some(directory) => {
                 let command = "granflow.run".to_owned();
-                let options = Options { directory, threads, resume, command, notice: hear };
+                let options = Options { directory, threads, resume, command, notice: &hear };
                 checked.compute(&options, &stop, &mut report).map(Left::InFolder)
             }
         };

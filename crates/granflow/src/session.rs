@@ -21,8 +21,8 @@ use std::time::Instant;
 const MAX_THREADS: usize = 1024;
 
 /// What is not in the case: where, with how many threads, whether to go on.
-#[derive(Debug, Clone)]
-pub struct Options<Hear = fn(&str)> {
+#[derive(Clone)]
+pub struct Options<'a> {
     /// Folder of the results.
     pub directory: PathBuf,
     /// Threads; 0 takes all cores.
@@ -32,7 +32,7 @@ pub struct Options<Hear = fn(&str)> {
     /// The command, for the history of the result.
     pub command: String,
     /// Hears, before the first step, what happened to an earlier run's files.
-    pub notice: Hear,
+    pub notice: &'a (dyn Fn(&str) + Sync),
 }
 
 /// Why a run did not end as its case says.
@@ -93,7 +93,7 @@ impl Checked {
     /// [`RunError`]; what was complete before stays complete.
     pub fn compute(
         self,
-        options: &Options<impl Fn(&str) + Sync>,
+        options: &Options,
         stop: &AtomicBool,
         report: &mut (dyn FnMut(&dyn Run) + Send),
     ) -> Result<Finished, RunError> {
@@ -130,7 +130,7 @@ impl Checked {
 
     fn into_files(
         self,
-        Options { directory, resume, command, notice, .. }: &Options<impl Fn(&str) + Sync>,
+        Options { directory, resume, command, notice, .. }: &Options,
         begun: Instant,
         stop: &AtomicBool,
         report: &mut (dyn FnMut(&dyn Run) + Send),
@@ -157,7 +157,7 @@ impl Checked {
             notice(&moved.to_string());
         }
         let mut files = begin(folder, &plan, origin, command, watch, &mut *run)?.since(begun);
-        files.notices().for_each(|text| notice(text));
+        files.notices().for_each(notice);
         let mut report = Callback(report);
         let sinks: &mut [&mut dyn Sink] = &mut [&mut Stop(stop), &mut report, &mut files];
         match drive(&mut *run, &plan.ends, sinks) {

@@ -23,7 +23,7 @@ fn compute(text: &str, folder: &Path) -> Result<Finished, Without> {
         threads: 1,
         resume: false,
         command: "test".to_owned(),
-        notice: |_| (),
+        notice: &|_| (),
     };
     checked.compute(&options, &AtomicBool::new(false), &mut |_| ()).map_err(|error| match error {
         RunError::Start(_) => Without::Refused,
@@ -204,7 +204,7 @@ fn a_scheme_that_loses_positivity_names_the_cell() {
         threads: 1,
         resume: false,
         command: "test".to_owned(),
-        notice: |_| (),
+        notice: &|_| (),
     };
     let error = case.check().unwrap().compute(&options, &AtomicBool::new(false), &mut |_| ()).unwrap_err();
     let message = error.to_string();

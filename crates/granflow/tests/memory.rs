@@ -115,7 +115,7 @@ fn a_run_on_a_mountain_takes_what_its_fields_take() {
         threads: 2,
         resume: false,
         command: "test".to_owned(),
-        notice: |_| (),
+        notice: &|_| (),
     };
     let (finished, bytes) =
         most(|| checked().compute(&options, &AtomicBool::new(false), &mut |_| ()).unwrap());

@@ -2,8 +2,9 @@
 
 use granflow::output::netcdf::Values;
 use granflow::raster::Raster;
+use granflow::results::Numbers;
 use granflow::session::Options;
-use granflow::sinks::{Kept, Numbers};
+use granflow::sinks::Kept;
 use granflow::{Case, Inputs};
 use netcdf_reader::NcFile;
 use std::path::Path;
@@ -71,7 +72,7 @@ fn on_disk(folder: &Path) -> NcFile {
     }
     let case = Case::read(folder.join("case.toml")).unwrap().check().unwrap();
     let (directory, command) = (folder.join("out"), "test".to_owned());
-    let options = Options { directory, threads: 1, resume: false, command, notice: |_| () };
+    let options = Options { directory, threads: 1, resume: false, command, notice: &|_| () };
     case.compute(&options, &AtomicBool::new(false), &mut |_| ()).unwrap();
     NcFile::open(folder.join("out/result.nc")).unwrap()
 }

@@ -16,7 +16,7 @@ fn run(folder: &Path, text: &str) -> NcFile {
         threads: 2,
         resume: false,
         command: "test".to_owned(),
-        notice: |_| (),
+        notice: &|_| (),
     };
     let case = Case::read(folder.join("case.toml")).unwrap().check().unwrap();
     case.compute(&options, &AtomicBool::new(false), &mut |_| ()).unwrap();

@@ -99,7 +99,7 @@ impl Pair {
             threads: 1,
             resume: true,
             command: "test".to_owned(),
-            notice,
+            notice: &notice,
         };
         let done = self.own.check().unwrap().compute(&options, &AtomicBool::new(false), &mut |_| ());
         done.map_err(|error| error.to_string())?.close().map(drop).map_err(|error| error.to_string())

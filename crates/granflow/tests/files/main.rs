@@ -39,8 +39,13 @@ fn begin(
     resume: bool,
     stop: &mut (dyn FnMut(&dyn Run) -> bool + Send),
 ) -> Result<Finished, RunError> {
-    let options =
-        Options { directory: out.to_owned(), threads: 2, resume, command: "test".to_owned(), notice: |_| () };
+    let options = Options {
+        directory: out.to_owned(),
+        threads: 2,
+        resume,
+        command: "test".to_owned(),
+        notice: &|_| (),
+    };
     let stopped = AtomicBool::new(false);
     case.check().unwrap().compute(&options, &stopped, &mut |status| {
         if stop(status) {

@@ -1,6 +1,7 @@
 //! The state of a run that somebody holds, on the disk and back.
 
 use super::*;
+use granflow::Inputs;
 use granflow::session::{restore, save};
 
 fn thickness(run: &dyn Run) -> Vec<u64> {
@@ -13,7 +14,7 @@ fn a_state_goes_on_with_the_same_bits_and_only_for_its_case() {
     let case = slope(folder.path(), "[\"netcdf\"]");
     let path = folder.path().join("states/one.bin");
     let checked = case.check().unwrap();
-    let made_of = origin(checked.plan(), checked.inputs()).unwrap();
+    let made_of = origin(checked.plan(), &Inputs::default()).unwrap();
     let mut run = checked.start().unwrap();
     run.until(3.0).unwrap();
     save(&mut *run, &made_of, &path).unwrap();
@@ -26,11 +27,11 @@ fn a_state_goes_on_with_the_same_bits_and_only_for_its_case() {
 
     let mu = ["material.friction.coulomb.mu=0.3".to_owned()];
     let softer = Case::read_with(folder.path().join("case.toml"), &mu).unwrap().check().unwrap();
-    let other = origin(softer.plan(), softer.inputs()).unwrap();
+    let other = origin(softer.plan(), &Inputs::default()).unwrap();
     let changes = restore(&mut *again, &other, &path).unwrap();
     assert!(changes[0].to_string().contains("mu = 0.3"), "{changes:?}");
     fs::write(folder.path().join("slope.asc"), "another mountain").unwrap();
-    let moved = origin(softer.plan(), softer.inputs()).unwrap();
+    let moved = origin(softer.plan(), &Inputs::default()).unwrap();
     let refused = restore(&mut *again, &moved, &path).unwrap_err().to_string();
     assert!(refused.contains("one.bin") && refused.contains("slope.asc is not what"), "{refused}");
 }
