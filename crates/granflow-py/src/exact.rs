@@ -60,6 +60,7 @@ macro_rules! functions {
     ($($name:ident($($place:ident),+; $($given:ident: $kind:ty),+): $made:expr => |$exact:pat_param| $values:expr;)+) => {
         $(
             #[pyfunction]
+            #[allow(clippy::too_many_arguments, reason = "a function of Python has its parameters side by side")]
             pub fn $name<'py>(
                 py: Python<'py>,
                 $($place: PyReadonlyArray1<'py, f64>,)+

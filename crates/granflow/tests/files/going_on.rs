@@ -342,7 +342,8 @@ fn a_deposit_on_a_chute_is_the_start_of_a_next_run() {
         };
         for named in [r#"{ result = "out" }"#, r#"{ result = "out/result.nc" }"#] {
             let same = next(named, &[]);
-            assert_eq!(same.summary.mass_initial.to_bits(), volume.to_bits());
+            // The same cells, added up once and not step by step.
+            assert!((same.summary.mass_initial / volume - 1.0).abs() <= 1e-14);
             assert_eq!((same.summary.stop_reason, same.summary.time), (StopReason::AtRest, 0.0));
             let left = same.map("deposit").unwrap();
             assert!(left.iter().zip(&deposit).all(|(a, b)| a.to_bits() == b.to_bits()));

@@ -64,8 +64,7 @@ fn a_result_is_drawn_again_as_it_was() {
     let run = avalanche(folder.path());
     let again = folder.path().join("again");
     let figures = Story::read(&run.result()).unwrap().draw(&again).unwrap();
-    // All but the two along the path over time, which need the frames.
-    assert_eq!(figures.len(), 7);
+    assert_eq!(figures.len(), 9);
     for figure in figures {
         let name = figure.path.file_name().unwrap();
         let first = fs::read(run.figures().join(name)).unwrap();

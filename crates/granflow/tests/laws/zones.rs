@@ -165,7 +165,7 @@ fn what_is_wrong_with_a_field_is_named_with_its_place_and_a_cure() {
         (
             "coulomb = { mu = { polygons = \"west.geojson\", attribute = \"mv\" } }",
             second,
-            vec!["`material.friction.coulomb.mu.attribute`", "west.geojson", "did you mean `mu`?"],
+            vec!["`material.friction.coulomb.mu.attribute`", "west.geojson", "it has mu"],
         ),
         (
             "coulomb = { mu = { raster = \"low.asc\", attribute = \"mu\" } }",
