@@ -33,12 +33,12 @@ export function chart(canvas, lines, { range, xLabel = '', yLabel = '', marks = 
   context.textAlign = 'center'
   ticks(x0, x1).forEach(x => {
     line(context, [px(x), px(x)], [box.top, box.bottom])
-    context.fillText(short(x), px(x), box.bottom + 15)
+    context.fillText(short(x, x1 - x0), px(x), box.bottom + 15)
   })
   context.textAlign = 'right'
   ticks(y0, y1).forEach(y => {
     line(context, [box.left, box.right], [py(y), py(y)])
-    context.fillText(short(y), box.left - 6, py(y) + 4)
+    context.fillText(short(y, y1 - y0), box.left - 6, py(y) + 4)
   })
   context.textAlign = 'center'
   context.fillText(xLabel, (box.left + box.right) / 2, height - 5)
@@ -73,7 +73,9 @@ function ticks(low, high) {
   return Array.from({ length: Math.floor(high / step + 1e-9) - first + 1 }, (_, k) => (first + k) * step)
 }
 
-const short = value => (Math.abs(value) < 1e-12 ? '0' : Math.abs(value) < 1e-3 ? value.toExponential(0) : String(+value.toPrecision(4)))
+// A number at a tick of an axis of that length.
+const short = (value, span) =>
+  (Math.abs(value) < 1e-9 * span ? '0' : Math.abs(value) < 1e-3 ? (+value.toPrecision(3)).toExponential() : String(+value.toPrecision(4)))
 
 function spanned(lines) {
   const all = key => lines.flatMap(one => Array.from(one[key])).filter(Number.isFinite)
