@@ -90,15 +90,15 @@ pub trait Physics<const D: usize>: Send + Sync + 'static {
     ) -> Option<f64> {
         None
     }
-    /// See [`Run::is_steady`]; `drift` is [`Run::drift`].
+    /// See [`Run::is_steady`](crate::run::Run::is_steady); `drift` is [`Run::drift`](crate::run::Run::drift).
     fn is_steady(&self, _simulation: &Simulation<D, Self::Scheme>, _drift: &[f64], _rate: f64) -> bool {
         false
     }
-    /// See [`Run::is_equilibrium`].
+    /// See [`Run::is_equilibrium`](crate::run::Run::is_equilibrium).
     fn is_equilibrium(&self) -> bool {
         false
     }
-    /// See [`Run::maps`].
+    /// See [`Run::maps`](crate::run::Run::maps).
     fn maps(&self, _simulation: &mut Simulation<D, Self::Scheme>) -> Maps {
         Vec::new()
     }
@@ -106,7 +106,7 @@ pub trait Physics<const D: usize>: Send + Sync + 'static {
     fn elevation(&self, _simulation: &Simulation<D, Self::Scheme>) -> Vec<f64> {
         Vec::new()
     }
-    /// See [`Run::numbers`]; `drift` is [`Run::drift`].
+    /// See [`Run::numbers`](crate::run::Run::numbers); `drift` is [`Run::drift`](crate::run::Run::drift).
     fn numbers(
         &self,
         _simulation: &Simulation<D, Self::Scheme>,
