@@ -28,6 +28,9 @@ pub(super) fn open(path: &Path, on_terrain: bool) -> Result<Ended, String> {
         return Err("it has no instant".to_owned());
     };
     let reason = file.text("stop_reason");
+    if reason == StopReason::Failed.to_string() {
+        return Err("it failed, and its last state is worth nothing".to_owned());
+    }
     let rests = [StopReason::AtRest, StopReason::Trickle].iter().any(|rest| rest.to_string() == reason);
     Ok(Ended { file, instant, time, rests })
 }

@@ -47,6 +47,8 @@ mod read {
 
     /// The share of the volume that may lie beyond the grid, by rounding.
     const LOST: f64 = 1e-9;
+    /// Centres apart by this share of a cell are the same: they were rounded.
+    const SAME: f64 = 1e-6;
 
     pub(super) fn laid(path: &Path, plan: &Plan, inputs: &Inputs) -> Result<Laid, StartError> {
         let unusable = |problem| StartError::Result { path: path.to_owned(), place: "a chute", problem };
@@ -85,7 +87,8 @@ mod read {
             return Err("nothing lay on it at its end".to_owned());
         }
         let same = |(own, centres): (&&Axis, &Vec<f64>)| {
-            (0..own.cells).map(|k| own.centre(k)).eq(centres.iter().copied())
+            let near = |(k, centre): (usize, &f64)| (own.centre(k) - centre).abs() <= SAME * own.width();
+            own.cells == centres.len() && centres.iter().enumerate().all(near)
         };
         if axes.iter().zip(&centres).all(same) {
             return Ok(values);
@@ -102,11 +105,14 @@ mod read {
             y.iter().map(|(j, share)| share * row(*j, x)).sum()
         };
         let carried: Vec<f64> = across.iter().flat_map(|y| along.iter().map(|x| cell(y, x))).collect();
-        let sizes: f64 =
-            axes.iter().zip(&centres).map(|(own, centres)| own.width() / (centres[1] - centres[0])).product();
+        let sizes = axes.iter().zip(&centres).map(|(own, centres)| Ok(own.width() / width(centres)?));
+        let sizes = sizes.product::<Result<f64, String>>()?;
         let lost = 1.0 - sum(&carried) * sizes / total;
         if lost > LOST {
-            return Err(format!("{:.4} % of what lay on it lies beyond the grid of this case", 100.0 * lost));
+            return Err(format!(
+                "{:.4} % of what lay on it lies beyond the grid of this case, which has to be larger",
+                100.0 * lost
+            ));
         }
         Ok(carried)
     }
@@ -117,10 +123,23 @@ mod read {
         sum.value()
     }
 
+    /// The size of cells with these centres, from all of them: one difference far from 0 would be rounding.
+    fn width(centres: &[f64]) -> Result<f64, String> {
+        let [first, .., last] = centres else {
+            return Err("it has fewer than two cells along an axis".to_owned());
+        };
+        let width = (last - first) / (centres.len() - 1) as f64;
+        let even = |(k, centre): (usize, &f64)| (first + k as f64 * width - centre).abs() <= SAME * width;
+        if width > 0.0 && centres.iter().enumerate().all(even) {
+            Ok(width)
+        } else {
+            Err("the centres of its cells are not evenly apart, in growing order".to_owned())
+        }
+    }
+
     /// For each cell of an axis the cells with these centres that overlap it, each with the share of the own cell that it covers.
     fn overlaps(own: &Axis, centres: &[f64]) -> Result<Vec<Vec<(usize, f64)>>, String> {
-        let width = centres.get(1).map(|second| second - centres[0]).filter(|width| *width > 0.0);
-        let width = width.ok_or("it has fewer than two cells along an axis")?;
+        let width = width(centres)?;
         let (low, size) = (centres[0] - 0.5 * width, own.width());
         let place = |edge: f64| ((edge - low) / width).clamp(0.0, centres.len() as f64);
         let cells = (0..own.cells).map(|k| {
@@ -130,5 +149,31 @@ mod read {
             touched.map(|j| (j, share(j))).collect()
         });
         Ok(cells.collect())
+    }
+
+    #[cfg(test)]
+    mod tests {
+        use super::{overlaps, width};
+        use granflow_case::Axis;
+
+        /// Far from 0 the difference of two centres has few digits; the volume is that of the cells all the same.
+        #[test]
+        fn far_from_0_the_volume_stays() {
+            for from in [0.0, 377_650.3, 5e6] {
+                let centres: Vec<f64> = (0..240).map(|k| from + (f64::from(k) + 0.5) * 0.1).collect();
+                assert!((width(&centres).unwrap() / 0.1 - 1.0).abs() < 1e-9, "{from}");
+                let own = Axis { from, to: from + 24.0, cells: 57 };
+                let shares = overlaps(&own, &centres).unwrap();
+                let volume: f64 = shares.iter().flatten().map(|(_, share)| share * own.width()).sum();
+                assert!((volume / 24.0 - 1.0).abs() < 1e-10, "{from}: {volume}");
+            }
+        }
+
+        #[test]
+        fn cells_of_different_sizes_are_refused() {
+            for centres in [&[0.0, 1.0, 2.5][..], &[2.0, 1.0, 0.0], &[0.0, f64::NAN, 2.0], &[1.0]] {
+                assert!(width(centres).is_err(), "{centres:?}");
+            }
+        }
     }
 }
