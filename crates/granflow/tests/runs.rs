@@ -4,6 +4,8 @@
 mod asc;
 #[path = "runs/erosion.rs"]
 mod erosion;
+#[path = "runs/pressed.rs"]
+mod pressed;
 #[path = "runs/supply.rs"]
 mod supply;
 #[path = "runs/valley.rs"]

@@ -29,10 +29,12 @@ pub fn coefficients(internal: f64, mu: f64) -> Option<[f64; 2]> {
 }
 
 /// The most that compression adds at the face of two cells: the momentum per cell area, in a step with dt/dx = `lambda`, of the
-/// excess (k_pas/k_act - 1) psi' h h/2 of the pressure; `head` is psi' = d psi/dh of each cell with k_act, h their depths.
+/// excess (k_pas/k_act - 1) psi' h^2/2 of the pressure; `head` is psi' = d psi/dh of each cell with k_act. h is the harmonic mean of
+/// their depths `h` > 0: a thin layer bears no more than its own thickness lets it.
 #[must_use]
 pub fn excess(excess: f64, head: [f64; 2], h: [f64; 2], lambda: f64) -> f64 {
-    lambda * (excess * (head[0] + head[1]) * 0.25 * (h[0] * h[1]))
+    let mean = 2.0 * (h[0] * h[1]) / (h[0] + h[1]);
+    lambda * (excess * (head[0] + head[1]) * 0.25 * (mean * mean))
 }
 
 /// A cell of a line.

@@ -8,7 +8,6 @@ use crate::StartError;
 use crate::memory::fits;
 use crate::model::Plane;
 use crate::run::{Run, Simulated, step_size};
-use granflow_case::avalanche::Material;
 use granflow_case::avalanche::{Method, SchemeName};
 use granflow_case::chute::Plan;
 use granflow_case::{Axis, RunPlan, Side};
@@ -93,8 +92,7 @@ where
         Flow { h: laid.with(n, h), q: std::array::from_fn(|k| h * u[k]) }
     };
     let simulation = Simulation::new(scheme, grid, step_size(run), ground, state)?;
-    let Material { pressure_coefficient, passive_coefficient, .. } = plan.material;
-    let compression = Compression::of([pressure_coefficient, passive_coefficient], film);
+    let compression = Compression::of(&plan.material, film);
     let between = compression.into_iter().map(|compression| Box::new(compression) as _).collect();
     let physics = Flowing::<D, S>::new(run.scheme, film, false)
         .with_threshold(run.output.threshold)

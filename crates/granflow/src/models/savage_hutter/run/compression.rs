@@ -1,6 +1,7 @@
 //! The passive earth pressure, which acts against compression between two steps, axis by axis.
 
 use super::between::BetweenSteps;
+use granflow_case::avalanche::Material;
 use granflow_engine::grid::Grid;
 use granflow_engine::simulation::Simulation;
 use granflow_model::savage_hutter::Flow;
@@ -13,6 +14,8 @@ use std::collections::BTreeMap;
 pub(super) struct Compression {
     /// k_pas/k_act - 1.
     excess: f64,
+    /// The friction coefficient of the bed.
+    mu: f64,
     /// A thinner layer is held.
     film: f64,
 }
@@ -27,12 +30,16 @@ struct Wet<const D: usize> {
     /// M e, the acceleration that a force along the line gives.
     along: [f64; D],
     head: f64,
+    /// h (|u|^2 - (dt mu g_n)^2) if it moves: above 0 if it is faster than friction stops it within the step.
+    fast: f64,
 }
 
 impl Compression {
-    /// Of a mass with these coefficients of stretching and compression, if they differ.
-    pub fn of([active, passive]: [f64; 2], film: f64) -> Option<Self> {
-        (passive > active).then(|| Compression { excess: passive / active - 1.0, film })
+    /// Of a material whose coefficients of stretching and compression differ.
+    pub fn of(material: &Material, film: f64) -> Option<Self> {
+        let [active, passive] = [material.pressure_coefficient, material.passive_coefficient];
+        let mu = material.mu.unwrap_or(0.0);
+        (passive > active).then(|| Compression { excess: passive / active - 1.0, mu, film })
     }
 
     /// A cell as a line along `axis` sees it, if it is more than a film.
@@ -40,7 +47,7 @@ impl Compression {
         &self,
         simulation: &Simulation<D, S>,
         index: [usize; D],
-        axis: usize,
+        (axis, dt): (usize, f64),
     ) -> Option<Wet<D>>
     where
         S: Scheme<D, f64, State = Flow<D, f64>>,
@@ -52,16 +59,20 @@ impl Compression {
         }
         let unit = std::array::from_fn(|k| if k == axis { 1.0 } else { 0.0 });
         let along = S::Ground::metric(&ground.plane(), unit);
-        Some(Wet { index, state, along, head: ground.head() })
+        let stopped = self.mu * ground.weight_at_rest() * dt;
+        let over = ground.square(state.velocity()) - stopped * stopped;
+        let fast = if state.is_still() { 0.0 } else { state.h * over };
+        Some(Wet { index, state, along, head: ground.head(), fast })
     }
 
-    /// The wet cells side by side in which something moves, of the line along `axis` from `begin`; `moving` are the places of its
-    /// moving cells, growing.
+    /// The wet cells side by side to be pressed, of the line along `axis` from `begin`; `moving` are the places of its moving cells,
+    /// growing. What moves in them has more energy than friction takes in a step: the last of it comes to rest as under k_act, for
+    /// stresses would take from step to step a share of what is left.
     fn runs<const D: usize, S>(
         &self,
         simulation: &Simulation<D, S>,
         begin: [usize; D],
-        axis: usize,
+        (axis, dt): (usize, f64),
         moving: &[usize],
     ) -> Vec<Vec<Wet<D>>>
     where
@@ -71,7 +82,7 @@ impl Compression {
         let wet = |at: usize| {
             let mut index = begin;
             index[axis] = at;
-            self.wet(simulation, index, axis)
+            self.wet(simulation, index, (axis, dt))
         };
         let end = simulation.grid().cells[axis];
         let (mut runs, mut seen) = (Vec::new(), 0);
@@ -85,18 +96,21 @@ impl Compression {
             run.push(middle);
             run.extend((at + 1..end).map_while(wet));
             seen = run.last().map_or(end, |last| last.index[axis] + 1);
-            runs.push(run);
+            if run.iter().map(|cell| cell.fast).sum::<f64>() > 0.0 {
+                runs.push(run);
+            }
         }
         runs
     }
 
-    /// The states of wet cells side by side along `axis` after a step with dt/dx = `lambda`.
+    /// The states of wet cells side by side along `axis` after a step `dt`.
     fn pressed<const D: usize>(
         &self,
         grid: &Grid<D>,
         cells: &[Wet<D>],
-        (axis, lambda): (usize, f64),
+        (axis, dt): (usize, f64),
     ) -> Vec<([usize; D], Flow<D, f64>)> {
+        let lambda = dt / grid.size[axis];
         let (first, last) = (&cells[0], &cells[cells.len() - 1]);
         let ends = [first.index[axis] == 0, last.index[axis] + 1 == grid.cells[axis]];
         let walls = [0, 1].map(|side| ends[side] && grid.boundary[axis][side] == Boundary::Wall);
@@ -137,7 +151,6 @@ where
         }
         let grid = *simulation.grid();
         for axis in 0..D {
-            let lambda = dt / grid.size[axis];
             let moving = simulation.of_moving(|index, here| (!here.state.is_still()).then_some(index));
             let mut lines: BTreeMap<[usize; D], Vec<usize>> = BTreeMap::new();
             for mut index in moving {
@@ -147,8 +160,8 @@ where
             let mut states = Vec::new();
             for (begin, mut moving) in lines {
                 moving.sort_unstable();
-                for run in self.runs(simulation, begin, axis, &moving) {
-                    states.extend(self.pressed(&grid, &run, (axis, lambda)));
+                for run in self.runs(simulation, begin, (axis, dt), &moving) {
+                    states.extend(self.pressed(&grid, &run, (axis, dt)));
                 }
             }
             if !states.is_empty() {

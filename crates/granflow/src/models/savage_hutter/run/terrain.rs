@@ -15,7 +15,6 @@ use crate::memory::fits;
 use crate::model::Plane;
 use crate::run::{Run, Simulated, step_size};
 use granflow_case::RunPlan;
-use granflow_case::avalanche::Material;
 use granflow_case::terrain::{Plan, TerrainScheme};
 use granflow_engine::grid::Grid;
 use granflow_engine::kernels::Kernel;
@@ -58,9 +57,9 @@ pub(super) fn simulate(
     let film = plan.scheme.film;
     // What comes later and what is picked up bring a head of their own.
     let grows = !supply.is_empty() || layer.as_ref().is_some_and(|(_, volume)| *volume > 0.0);
-    let Material { pressure_coefficient, passive_coefficient, .. } = plan.material;
+    let pressure_coefficient = plan.material.pressure_coefficient;
     let ceiling = if grows { f64::MAX } else { gravity * ceiling(&terrain, pressure_coefficient, &release) };
-    let compression = Compression::of([pressure_coefficient, passive_coefficient], film);
+    let compression = Compression::of(&plan.material, film);
     let density = plan.material.density;
     let erodible = plan.entrainment.as_ref().zip(layer).map(|(entrainment, (whole, _))| {
         Erodible::of(entrainment, whole, (material.law, parameters.clone()), density, &terrain.bed)
