@@ -226,6 +226,9 @@ pub(crate) fn with_neighbour(error: CaseError, path: &Path, files: &dyn FileAcce
     let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
     let wanted = path.file_name().map(|name| name.to_string_lossy().into_owned()).unwrap_or_default();
     let Some(names) = files.names(folder) else {
+        if files.find(folder).is_ok() {
+            return error.help(format!("{} is a file, not a folder", folder.display()));
+        }
         return error.help(format!("the folder {} does not exist", folder.display()));
     };
     match nearest(&wanted, names.iter().map(String::as_str).filter(|name| *name != wanted)) {

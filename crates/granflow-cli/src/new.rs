@@ -147,14 +147,16 @@ fn exists(path: &Path) -> Failure {
     ))
 }
 
+/// Writes a file that was not there, in whole or not at all.
 fn write_new(path: &Path, text: &str) -> Result<(), Failure> {
-    let written = OpenOptions::new()
-        .write(true)
-        .create_new(true)
-        .open(path)
-        .and_then(|mut file| file.write_all(text.as_bytes()));
-    written.map_err(|error| match error.kind() {
+    let failed = |error: std::io::Error| match error.kind() {
         ErrorKind::AlreadyExists => exists(path),
         _ => Failure::file("write", path, &error),
+    };
+    let mut file = OpenOptions::new().write(true).create_new(true).open(path).map_err(failed)?;
+    file.write_all(text.as_bytes()).map_err(|error| {
+        // A part of a case would hinder the next try.
+        let _ = std::fs::remove_file(path);
+        failed(error)
     })
 }

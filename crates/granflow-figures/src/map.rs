@@ -106,6 +106,12 @@ impl Map<'_> {
     }
 }
 
+impl Overlay<'_> {
+    fn is_seen(&self) -> bool {
+        self.values.iter().any(|&value| value > self.threshold)
+    }
+}
+
 /// The range of colours of an overlay: from zero (or the threshold) to its greatest value.
 fn colour_range(overlay: &Overlay) -> [f64; 2] {
     let found = extent(overlay.values.iter().copied().filter(|&v| v > overlay.threshold));
@@ -207,7 +213,8 @@ impl Figure for Map<'_> {
         let scale = |range| Scale { coordinates: true, ..Scale::new(range) };
         let (x, y) = (scale(view.x), scale(view.y));
         let (wide, high) = paper(view);
-        let laid = self.overlay.map(|overlay| Laid::new(overlay, self.extent.nx));
+        // Colours that stand nowhere need no scale.
+        let laid = self.overlay.filter(Overlay::is_seen).map(|overlay| Laid::new(overlay, self.extent.nx));
         let bar = laid.as_ref().map(Laid::bar);
         let room = bar.as_ref().map_or(10.0, |bar| 16.0 + bar.room(high));
         let head = heading_height(self.title, self.subtitle);
@@ -300,9 +307,12 @@ mod tests {
     }
 
     #[test]
-    fn an_overlay_that_nowhere_passes_its_threshold_has_a_range() {
-        let overlay = Overlay { values: &[0.0, 0.01, f64::NAN], threshold: 0.1, ..Default::default() };
-        assert_eq!(colour_range(&overlay), [0.0, 0.2]);
+    fn an_overlay_that_nowhere_passes_its_threshold_is_none() {
+        let extent = Extent { nx: 3, ny: 2, west: 0.0, south: 0.0, cell: 5.0 };
+        let overlay =
+            Overlay { values: &[0.0, 0.01, f64::NAN, 0.1, 0.0, -1.0], threshold: 0.1, ..Default::default() };
+        let with = Map { extent, bed: &[0.0; 6], overlay: Some(overlay), ..Default::default() };
+        assert!(with.draw().unwrap() == Map { overlay: None, ..with }.draw().unwrap());
         let flat = Overlay { values: &[2.0, 2.0], threshold: 0.1, ..Default::default() };
         assert_eq!(colour_range(&flat), [0.0, 2.0]);
     }

@@ -213,14 +213,14 @@ fn laid(layer: Layer, thickness: &Thickness, template: &Raster) -> Result<Sparse
 /// [`ReleaseError::Raster`] with what [`Raster::read`] says, a negative thickness with its place, a raster without
 /// any material, and material beyond the edge of `template` or on its nodata cells.
 pub fn raster(path: &Path, template: &Raster) -> Result<Sparse, ReleaseError> {
-    carried(path, &Reading::on_terrain(path, template.crs.as_ref())?.raster, template)
+    carried(Form::Raster, path, &Reading::on_terrain(path, template.crs.as_ref())?.raster, template)
 }
 
-/// As [`raster`], for a raster that was read before; `path` stands in messages.
+/// As [`raster`], for one that was read before from a file of this form; `path` stands in messages.
 ///
 /// # Errors
 /// As [`raster`], but for reading.
-pub fn carried(path: &Path, given: &Raster, template: &Raster) -> Result<Sparse, ReleaseError> {
+pub fn carried(form: Form, path: &Path, given: &Raster, template: &Raster) -> Result<Sparse, ReleaseError> {
     given.same_system(path, template)?;
     if let Some(k) = given.values.iter().position(|h| *h < 0.0 || *h > THICKEST) {
         let (x, y) = (given.x(k % given.columns), given.y(k / given.columns));
@@ -245,7 +245,7 @@ pub fn carried(path: &Path, given: &Raster, template: &Raster) -> Result<Sparse,
     if lost <= LOST {
         return Ok(height);
     }
-    Err(ReleaseError::outside_as(Form::Raster, path, bounds, template, lost))
+    Err(ReleaseError::outside_as(form, path, bounds, template, lost))
 }
 
 /// The parts of polygon `k` that polygons before it cover, each point once.

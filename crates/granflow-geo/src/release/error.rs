@@ -228,9 +228,12 @@ impl ReleaseError {
         let within = (0..2).all(|k| release[k] >= terrain[k] && release[k + 2] <= terrain[k + 2]);
         let degrees =
             release[0] >= -360.0 && release[2] <= 360.0 && release[1] >= -90.0 && release[3] <= 90.0;
-        let cure = match (apart, degrees) {
-            (true, true) => format!("the release {}", form.degrees(path, template.crs.as_ref())),
-            (true, false) => format!(
+        let cure = match (form, apart, degrees) {
+            (Form::Result, true, _) => "that run was on another terrain; take one that was on this terrain, \
+                 or an elevation model that holds both"
+                .to_owned(),
+            (_, true, true) => format!("the release {}", form.degrees(path, template.crs.as_ref())),
+            (_, true, false) => format!(
                 "the two are probably in different systems; reproject the release with\n  {}\n\
                  (EPSG:xxxx: the system that the release is in)",
                 form.reproject(path, "EPSG:xxxx", template.crs.as_ref())
@@ -289,6 +292,8 @@ pub enum Form {
     Polygons,
     /// A raster, by `gdalwarp`.
     Raster,
+    /// A result of this program, which no such program reprojects.
+    Result,
 }
 
 impl Form {
@@ -304,7 +309,7 @@ impl Form {
             Form::Polygons => {
                 format!("ogr2ogr -t_srs {target} -s_srs {from} {stem}_reprojected.shp {path}{about}")
             }
-            Form::Raster => {
+            Form::Raster | Form::Result => {
                 format!("gdalwarp -t_srs {target} -s_srs {from} {path} {stem}_reprojected.tif{about}")
             }
         }

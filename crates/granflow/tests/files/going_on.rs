@@ -356,6 +356,10 @@ fn a_deposit_on_a_chute_is_the_start_of_a_next_run() {
             let other = next(r#"{ result = "out" }"#, &grid).summary.mass_initial;
             assert!((other / volume - 1.0).abs() < 1e-13, "{other} {volume}");
         }
+        // What is scaled by another epsilon is said.
+        let thinner = with(&case, &[r#"initial={ result = "out" }"#, "material.epsilon=0.5"]);
+        let said = thinner.check().unwrap().describe().unwrap();
+        assert!(said.iter().any(|(kind, text)| *kind == "warning" && text.contains("epsilon = 1,")));
         // A second layer runs over it, and it alone has the speed.
         let layer = "thickness = { cap = { height = 0.5, centre = -3.0, radius = 1.0 } }, velocity_x = 2.0";
         let alone = next(&format!("{{ {layer} }}"), &["time.steps=1"]).summary.mass_initial;

@@ -41,7 +41,8 @@ impl Laid {
 mod read {
     use super::super::super::ended::{self, Ended};
     use super::{Inputs, Laid, Plan, StartError};
-    use granflow_case::Axis;
+    use crate::access::Access;
+    use granflow_case::{Axis, Case, Kind};
     use granflow_model::real::CompensatedSum;
     use std::path::Path;
 
@@ -60,7 +61,25 @@ mod read {
         let thickness = thickness(&ended, plan).map_err(unusable)?;
         let (rests, text) = ended::remark(path, &ended.time.to_string(), ended.rests);
         let kind = if rests { "note" } else { "warning" };
-        Ok(Laid { thickness, remarks: vec![format!("{kind}: {text}")] })
+        let mut remarks = vec![format!("{kind}: {text}")];
+        if let Some(epsilon) =
+            epsilon(&ended.file.text("case"), inputs).filter(|epsilon| *epsilon != plan.epsilon)
+        {
+            remarks.push(format!(
+                "warning: {}: its thickness was scaled with epsilon = {epsilon}, this case has {}; its numbers are taken as they are",
+                path.display(),
+                plan.epsilon
+            ));
+        }
+        Ok(Laid { thickness, remarks })
+    }
+
+    /// H/L of the case of a result, where that can be read.
+    fn epsilon(case: &str, inputs: &Inputs) -> Option<f64> {
+        match Case::parse(case, "case").ok()?.check(&Access(inputs)).ok()?.kind {
+            Kind::Chute(plan) => Some(plan.epsilon),
+            _ => None,
+        }
     }
 
     /// The last thickness of a run on the cells of the plan: by number where the cells are the same, else by area, so that the

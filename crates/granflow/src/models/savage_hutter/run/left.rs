@@ -27,7 +27,7 @@ pub(super) fn left_by(
     let last = stored::last(path).map_err(unusable)?;
     let (rests, text) = ended::remark(path, &format!("{} s", last.time), last.rests);
     remarks.push(if rests { Remark::Note(text) } else { Remark::Warning(text) });
-    Ok((release::carried(path, &last.volume, bed)?, last.volume.crs))
+    Ok((release::carried(release::Form::Result, path, &last.volume, bed)?, last.volume.crs))
 }
 
 #[cfg(not(feature = "files"))]

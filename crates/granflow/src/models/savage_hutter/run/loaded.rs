@@ -157,7 +157,11 @@ fn add(loaded: &mut Loaded, one: &Release, inputs: &Inputs, crs: Option<&Crs>) -
             let reading = inputs.thickness(path, bed.crs.as_ref().or(crs))?;
             loaded.remarks.extend(reading.notes);
             let system = Some(described(reading.raster.crs.as_ref()));
-            (path.display().to_string(), system, release::carried(path, &reading.raster, bed)?)
+            (
+                path.display().to_string(),
+                system,
+                release::carried(release::Form::Raster, path, &reading.raster, bed)?,
+            )
         }
         Extent::Cap(cap) => {
             let cells = release::cap(cap.height, cap.centre, cap.radius, bed)?;
