@@ -66,6 +66,13 @@ const ON_A_GRID: &[Bad] = &[
     ("\"balanced\"", "\"scheme_4\"", 13, &["did you mean"], 2),
     ("friction.coulomb", "friction.coulom", 9, &["found `coulom`", "did you mean `coulomb`?", "voellmy"], 2),
     ("{ angle =", "{ angel =", 9, &["unknown key `angel`", "did you mean `angle`?"], 2),
+    (
+        "epsilon = 0.4",
+        "epsilon = 0.4\nearth_pressure.active_passive = { internl = \"35 deg\" }",
+        8,
+        &["unknown key `internl` in material.earth_pressure.active_passive", "did you mean `internal`?"],
+        2,
+    ),
     ("thickness.steps", "thickness.step", 11, &["found `step`", "did you mean `steps`?", "parabola"], 2),
     ("\"open\"", "\"opn\"", 5, &["grid.boundary", "did you mean `open`?"], 2),
     (

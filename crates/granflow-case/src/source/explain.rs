@@ -32,6 +32,11 @@ impl Source {
         let quoted: Vec<&str> = message.split('`').skip(1).step_by(2).collect();
         let plain = |text: String| self.at(span.clone(), key, text);
         match quoted.as_slice() {
+            // The table of a choice says it in words of its own.
+            _ if let Some((found, known)) = unexpected(message) => {
+                let table = key.rsplit_once('.').map_or("the case", |(table, _)| table);
+                plain(format!("unknown key `{found}` in {table}")).allowed(found, known.split(", "))
+            }
             [found, known @ ..] if message.starts_with("unknown field") => {
                 let table = key.rsplit_once('.').map_or("the case", |(table, _)| table);
                 let error = plain(format!("unknown key `{found}` in {table}"));
@@ -66,6 +71,13 @@ impl Source {
             _ => plain(friendly(message)),
         }
     }
+}
+
+/// The first key that a table of a choice does not know, and those it does.
+fn unexpected(message: &str) -> Option<(&str, &str)> {
+    let (found, known) =
+        message.strip_prefix("unexpected keys in table: ")?.split_once(", available keys: ")?;
+    Some((found.split(", ").next()?, known))
 }
 
 /// serde's names of types in plain words.
