@@ -13,6 +13,8 @@ mod path;
 #[cfg(feature = "figures")]
 mod pictures;
 pub mod run;
+#[cfg(feature = "files")]
+mod stopped;
 #[cfg(all(feature = "files", feature = "geo"))]
 mod stored;
 #[cfg(feature = "geo")]
@@ -21,7 +23,11 @@ mod terrain;
 #[cfg(feature = "geo")]
 pub use terrain::TerrainDomain;
 
+#[cfg(feature = "files")]
+use crate::model::Maps;
 use crate::model::{Domain, Model, Quantity, Words};
+#[cfg(feature = "files")]
+use crate::output::summary::Summary;
 
 /// The model.
 pub static MODEL: Model = Model {
@@ -128,6 +134,12 @@ impl Domain for ChuteDomain {
             "surface" | "speed" => false,
             _ => true,
         }
+    }
+
+    /// When almost all had stopped.
+    #[cfg(feature = "files")]
+    fn derive(&self, _centres: [&[f64]; 2], maps: &mut Maps, summary: &mut Summary) {
+        stopped::note(maps, |cells| self.per_plan_area(cells), summary);
     }
 
     fn remarks(&self) -> Vec<String> {

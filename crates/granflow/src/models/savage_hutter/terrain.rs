@@ -2,6 +2,8 @@
 
 use super::MODEL;
 #[cfg(feature = "files")]
+use super::stopped;
+#[cfg(feature = "files")]
 use crate::model::Maps;
 use crate::model::{Domain, Model, Quantity, Units};
 #[cfg(feature = "files")]
@@ -109,9 +111,10 @@ impl Domain for TerrainDomain {
         Some(Arc::new(TerrainDomain { raster, ..self.clone() }))
     }
 
-    /// The peak pressure, runout and reach angle.
+    /// The peak pressure, runout and reach angle, and when almost all had stopped.
     #[cfg(feature = "files")]
     fn derive(&self, centres: [&[f64]; 2], maps: &mut Maps, summary: &mut Summary) {
+        stopped::note(maps, |cells| self.per_plan_area(cells), summary);
         let Some((_, speed)) = maps.iter().find(|(name, _)| *name == "peak_speed") else { return };
         let pressure: Vec<f64> = speed.iter().map(|v| self.pressure(*v)).collect();
         let covered = maps.iter().find(|(name, _)| *name == "peak_thickness").map(|(_, map)| map.as_slice());
