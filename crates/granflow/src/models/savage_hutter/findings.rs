@@ -74,7 +74,7 @@ pub(super) fn key_figures(summary: &Summary) -> Vec<KeyFigure> {
         KeyFigure { name: "Ended because".into(), value: summary.stop_reason.to_string() },
         figure("Counted above", summary.threshold, " m"),
         figure("Stopping time", summary.stopping_time, " s"),
-        figure("99 % of the deposit stopped after", summary.extra("stopping_time_99"), " s"),
+        figure("95 % of the deposit stopped after", summary.extra("stopping_time_95"), " s"),
         figure("Simulated time", Some(summary.time), " s"),
         figure("Largest speed", Some(summary.max_speed), " m/s"),
         figure("Largest peak pressure", summary.extra("peak_pressure_max"), " kPa"),
