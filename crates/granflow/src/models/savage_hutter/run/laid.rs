@@ -41,8 +41,7 @@ impl Laid {
 mod read {
     use super::super::super::ended::{self, Ended};
     use super::{Inputs, Laid, Plan, StartError};
-    use crate::access::Access;
-    use granflow_case::{Axis, Case, Kind};
+    use granflow_case::{Axis, Case, Kind, NoFiles};
     use granflow_model::real::CompensatedSum;
     use std::path::Path;
 
@@ -62,9 +61,7 @@ mod read {
         let (rests, text) = ended::remark(path, &ended.time.to_string(), ended.rests);
         let kind = if rests { "note" } else { "warning" };
         let mut remarks = vec![format!("{kind}: {text}")];
-        if let Some(epsilon) =
-            epsilon(&ended.file.text("case"), inputs).filter(|epsilon| *epsilon != plan.epsilon)
-        {
+        if let Some(epsilon) = epsilon(&ended.file.text("case")).filter(|epsilon| *epsilon != plan.epsilon) {
             remarks.push(format!(
                 "warning: {}: its thickness was scaled with epsilon = {epsilon}, this case has {}; its numbers are taken as they are",
                 path.display(),
@@ -74,9 +71,10 @@ mod read {
         Ok(Laid { thickness, remarks })
     }
 
-    /// H/L of the case of a result, where that can be read.
-    fn epsilon(case: &str, inputs: &Inputs) -> Option<f64> {
-        match Case::parse(case, "case").ok()?.check(&Access(inputs)).ok()?.kind {
+    /// H/L of the case of a result, where that can be read without other files.
+    fn epsilon(case: &str) -> Option<f64> {
+        let written = ["output = {}".to_owned()];
+        match Case::parse_with(case, "case", &written).ok()?.check(&NoFiles).ok()?.kind {
             Kind::Chute(plan) => Some(plan.epsilon),
             _ => None,
         }
