@@ -1,6 +1,8 @@
 //! Maps as GeoTIFF, and the styles in which QGIS opens them.
 
-use super::{Error, settle, temporary};
+#[cfg(feature = "figures")]
+use super::Error;
+use super::{settle, temporary};
 #[cfg(feature = "figures")]
 use super::{style::Style, whole_file};
 use crate::raster::{Raster, RasterError};

@@ -4,8 +4,10 @@ use crate::model::{At, Kind, Quantity};
 use crate::output::rasters;
 #[cfg(feature = "figures")]
 use crate::output::style::Style;
+use crate::results::FilesError;
+#[cfg(feature = "figures")]
+use crate::results::Finished;
 use crate::results::format::{Format, Work};
-use crate::results::{FilesError, Finished};
 use granflow_case::FileKind;
 use rayon::prelude::*;
 use std::path::PathBuf;
