@@ -303,6 +303,12 @@ mod tests {
             assert!(shared.draw().unwrap() == map(values).draw().unwrap());
         }
         assert!(relief.shows(map(&one).view(), map(&one).mountain().unwrap().size()));
+        let next = |[low, high]: [f64; 2]| [low.next_up(), high.next_down()];
+        let View { x, y } = map(&one).view();
+        assert!(
+            relief.shows(View { x: next(x), y: next(y) }, relief.size()),
+            "the last bits are no other box"
+        );
         assert!(!relief.shows(map(&other).view(), relief.size()), "it shows another box");
     }
 

@@ -2,7 +2,7 @@
 
 use crate::memory::Size;
 use granflow_case::memory::{available, in_words};
-use granflow_case::{Axis, Frames, RunPlan, Stepping, Until};
+use granflow_case::{Axis, Ensemble, Frames, RunPlan, Stepping, Until};
 
 /// A line: a name, empty where it continues the line before, and a value.
 pub type Line = (&'static str, String);
@@ -52,8 +52,9 @@ fn ends(run: &RunPlan) -> String {
 
 /// Memory, frames and steps, from the Courant number `rate` of a step of length 1 at the start.
 pub(crate) fn effort(run: &RunPlan, size: &Size, rate: f64) -> Vec<Line> {
-    let mut lines =
-        vec![("memory", memory(run, size)), ("writes", written(run, size)), ("steps", steps(run, rate))];
+    let mut lines = vec![("memory", memory(run, size))];
+    lines.extend(run.ensemble.as_ref().map(|ensemble| ("", of_ensemble(run, size, ensemble))));
+    lines.extend([("writes", written(run, size)), ("steps", steps(run, rate))]);
     if let Stepping::Fixed(step) = run.stepping {
         let (courant, limit) = (step * rate, run.max_courant);
         let verdict = if courant <= limit { "in order" } else { "too large, the scheme is not stable there" };
@@ -64,9 +65,18 @@ pub(crate) fn effort(run: &RunPlan, size: &Size, rate: f64) -> Vec<Line> {
 
 pub(crate) fn memory(run: &RunPlan, size: &Size) -> String {
     let peak = size.peak(run);
+    format!("about {} at its peak{}", in_words(peak), too_much(peak))
+}
+
+/// The same of `granflow ensemble`.
+fn of_ensemble(run: &RunPlan, size: &Size, ensemble: &Ensemble) -> String {
+    let peak = size.of_ensemble(run, ensemble);
+    format!("an ensemble with a member on each core about {}{}", in_words(peak), too_much(peak))
+}
+
+fn too_much(peak: f64) -> String {
     let beyond = available().filter(|free| peak > *free as f64);
-    let verdict = beyond.map(|free| format!(", more than the {} that are free", in_words(free as f64)));
-    format!("about {} at its peak{}", in_words(peak), verdict.unwrap_or_default())
+    beyond.map(|free| format!(", more than the {} that are free", in_words(free as f64))).unwrap_or_default()
 }
 
 /// From so many bytes on `check` says how `result.nc` is packed.

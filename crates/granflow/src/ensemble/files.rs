@@ -58,7 +58,7 @@ impl Ensemble {
 
     /// What `result.nc` holds of these maps; `command` is its history.
     #[must_use]
-    pub fn dataset(&self, maps: &[Map], command: &str) -> Dataset<'_> {
+    pub fn dataset<'a>(&'a self, maps: &'a [Map], command: &str) -> Dataset<'a> {
         let plane = self.plane();
         let (units, projected) = (plane.domain.units(), plane.domain.projected());
         let along = |axis, name: &str, places: &[f64]| {
@@ -69,13 +69,13 @@ impl Ensemble {
             axes.insert(0, along("Y", "y", &plane.y));
         }
         let names: Vec<String> = axes.iter().map(|axis| axis.name.clone()).collect();
-        let variable = |map: &Map| Variable {
+        let variable = |map: &'a Map| Variable {
             name: map.name.clone(),
             long_name: map.long_name.clone(),
             units: map.units.to_owned(),
             axes: names.clone(),
             precision: Precision::F64,
-            values: Values::Static(map.values.clone().into()),
+            values: Values::Static((&map.values).into()),
         };
         let mut variables: Vec<Variable> = maps.iter().map(variable).collect();
         if let Some(bed) = plane.domain.elevation() {

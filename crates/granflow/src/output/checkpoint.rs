@@ -1,6 +1,6 @@
 //! The checkpoint: everything a run needs to go on bit for bit.
 //!
-//! Layout, all little endian: the line `granflow checkpoint 6`, a u32 length, that many bytes of JSON (version,
+//! Layout, all little endian: the line `granflow checkpoint 7`, a u32 length, that many bytes of JSON (version,
 //! case, inputs, past, step, end, names and lengths), then as raw f64 the time and the scalars, then the arrays as raw
 //! f64 or f32, then how far frames, ledger, gauges.csv and sections.csv had come (u64 records, u32
 //! CRC-32 of them, four times), then the CRC-32 of all before.
@@ -16,7 +16,7 @@ use std::fs::File;
 use std::io::{self, BufReader, Read, Write};
 use std::path::Path;
 
-const MAGIC: &[u8] = b"granflow checkpoint 6\n";
+const MAGIC: &[u8] = b"granflow checkpoint 7\n";
 const VERSION: &str = env!("CARGO_PKG_VERSION");
 /// Numbers that are turned from or into bytes in one go.
 const AT_ONCE: usize = 1 << 15;

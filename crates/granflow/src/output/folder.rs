@@ -2,6 +2,7 @@
 
 use super::inputs::Input;
 use super::{Error, remove_if_there, remove_leftovers, whole_file};
+use serde::{Deserialize, Serialize};
 use std::fmt;
 use std::fs::{self, File, OpenOptions, TryLockError};
 use std::io::{self, Read, Seek, Write};
@@ -40,6 +41,24 @@ const OF_ENSEMBLE: [&str; 2] = ["checkpoint/ensemble.bin", "ensemble.json"];
 const FOLDERS: [&str; 4] = ["figures", "members", "rasters", "vtk"];
 /// Where the files of an earlier run go.
 const ASIDE: &str = "previous";
+
+/// The list of files, with a checksum over all of it: one with entries cut out would call a folder whole that is not.
+#[derive(Serialize, Deserialize)]
+struct List {
+    files: Vec<Input>,
+    crc: u32,
+}
+
+impl List {
+    fn of(files: Vec<Input>) -> List {
+        let crc = Input::checksum(&files);
+        List { files, crc }
+    }
+
+    fn is_whole(&self) -> bool {
+        self.crc == Input::checksum(&self.files)
+    }
+}
 
 /// What an earlier run or ensemble left, in its new place; says so in a sentence.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -181,8 +200,8 @@ impl Folder {
         names.sort();
         let files: Result<Vec<Input>, Error> =
             names.iter().map(|name| Input::left(&self.path.join(name), Path::new(name))).collect();
-        let files = files?;
-        whole_file(&self.path.join(LEFT), |out| serde_json::to_writer(out, &files).map_err(io::Error::from))
+        let list = List::of(files?);
+        whole_file(&self.path.join(LEFT), |out| serde_json::to_writer(out, &list).map_err(io::Error::from))
     }
 
     /// How many files a finished run left, and what became of those that are not as it left them.
@@ -191,8 +210,8 @@ impl Folder {
     /// [`Error::Io`] naming the file that cannot be read.
     pub fn lost(&self) -> Result<(usize, Vec<String>), Error> {
         let path = self.path.join(LEFT);
-        let listed = fs::read_to_string(&path).ok().and_then(|text| serde_json::from_str(&text).ok());
-        let Some(listed): Option<Vec<Input>> = listed else {
+        let read = fs::read_to_string(&path).ok().and_then(|text| serde_json::from_str(&text).ok());
+        let Some(List { files: listed, .. }) = read.filter(List::is_whole) else {
             return Ok((0, vec![format!("{LEFT}, the list of the files, is gone or damaged")]));
         };
         let mut lost = Vec::new();

@@ -59,6 +59,20 @@ impl Input {
         Ok(input)
     }
 
+    /// The CRC-32 over a list of files.
+    pub(super) fn checksum(files: &[Input]) -> u32 {
+        let mut crc = crc32fast::Hasher::new();
+        crc.update(&(files.len() as u64).to_le_bytes());
+        for Input { name, bytes, crc: own } in files {
+            // A zero ends the name.
+            crc.update(name.as_bytes());
+            crc.update(&[0]);
+            crc.update(&bytes.to_le_bytes());
+            crc.update(&own.to_le_bytes());
+        }
+        crc.finalize()
+    }
+
     /// The file at `path`, called `name`.
     pub(super) fn of(path: &Path, name: &Path) -> Result<Input, Error> {
         let mut file = File::open(path).map_err(Error::io(path, "read"))?;

@@ -19,7 +19,7 @@ pub struct Saved<'a> {
     /// How fast each component changed in the last step, as [`Run::drift`](super::Run::drift).
     pub drift: Vec<f64>,
     /// What the model keeps beside the state, as [`Physics::save`](super::Physics::save) gives it.
-    pub model: Vec<f64>,
+    pub model: Vec<Cow<'a, [f64]>>,
     /// What has passed each section, as a sum and its compensation.
     pub passed: Vec<[f64; 2]>,
     /// What the maps of durations are made of, two arrays each.
@@ -40,7 +40,7 @@ impl Saved<'_> {
             maps: maps.into_iter().map(|(name, map)| (name, Cow::Owned(map.into_owned()))).collect(),
             at_rest,
             drift,
-            model,
+            model: model.into_iter().map(|part| Cow::Owned(part.into_owned())).collect(),
             passed,
             durations: durations.into_iter().map(|part| Cow::Owned(part.into_owned())).collect(),
             record,

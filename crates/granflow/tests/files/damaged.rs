@@ -34,6 +34,14 @@ fn put_back(folder: &Path, all: &Contents) {
     }
 }
 
+/// A list of files without its first entry, which is a list as well.
+fn entry_less(list: &[u8]) -> Option<Vec<u8>> {
+    let text = std::str::from_utf8(list).ok()?;
+    let first = text.find(r#"{"name":"#)?;
+    let second = first + text[first..].find("},{")? + 2;
+    Some([&text[..first], &text[second..]].concat().into_bytes())
+}
+
 /// What may become of a file; `other` is the file of that name of another run. No bytes: it is gone.
 fn damages(sound: &[u8], other: Option<&Vec<u8>>) -> Vec<(&'static str, Option<Vec<u8>>)> {
     let flipped = |at: usize| {
@@ -51,7 +59,9 @@ fn damages(sound: &[u8], other: Option<&Vec<u8>>) -> Vec<(&'static str, Option<V
         ("nothing in it", Some(Vec::new())),
         ("gone", None),
         ("more", Some([sound, b"more"].concat())),
+        ("a list of nothing", Some(b"[]".to_vec())),
     ];
+    all.extend(entry_less(sound).map(|less| ("an entry less", Some(less))));
     all.extend(other.filter(|other| *other != sound).map(|other| ("another run's", Some(other.clone()))));
     all
 }

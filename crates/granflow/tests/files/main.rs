@@ -4,6 +4,7 @@ mod damaged;
 mod going_on;
 mod resumed;
 mod state;
+mod upon;
 mod written;
 
 use granflow::Case;
@@ -90,6 +91,17 @@ every = 4.0
 precision = "f64"
 "#;
     case(&format!("{text}files = {files}\n"), folder)
+}
+
+fn with(case: &Path, overrides: &[&str]) -> Case {
+    let overrides: Vec<String> = overrides.iter().map(|&change| change.to_owned()).collect();
+    Case::read_with(case, &overrides).unwrap()
+}
+
+/// The case file of the slope.
+fn file(folder: &Path) -> PathBuf {
+    slope(folder, r#"["netcdf", "report"]"#);
+    folder.join("case.toml")
 }
 
 fn avalanche(folder: &Path) -> Finished {

@@ -3,6 +3,7 @@
 use crate::run::{Laws, Maps, Record};
 use granflow_engine::simulation::Simulation;
 use granflow_model::scheme::{Cell, Scheme};
+use std::borrow::Cow;
 
 /// A cell of a scheme: its state, ground and forcing.
 pub type CellOf<const D: usize, S> =
@@ -54,12 +55,17 @@ pub trait Physics<const D: usize>: Send + Sync + 'static {
     fn prepare(&mut self, _simulation: &mut Simulation<D, Self::Scheme>, _until: f64) -> f64 {
         f64::INFINITY
     }
-    /// What decides how the run goes on beside state and ledger, such as the time from which the present forcing holds.
-    fn save(&self) -> Vec<f64> {
+    /// What decides how the run goes on beside state and ledger, such as the time from which the present forcing holds: always as
+    /// many lists of numbers, each as long as before.
+    fn save(&self) -> Vec<Cow<'_, [f64]>> {
         Vec::new()
     }
     /// Take up what [`Physics::save`] gave and set the forcing of then; state and ledger follow. False where it does not fit.
-    fn restore(&mut self, _simulation: &mut Simulation<D, Self::Scheme>, saved: &[f64]) -> bool {
+    fn restore(
+        &mut self,
+        _simulation: &mut Simulation<D, Self::Scheme>,
+        saved: &[Cow<'static, [f64]>],
+    ) -> bool {
         saved.is_empty()
     }
     /// Let what comes at the time of the simulation come.

@@ -50,15 +50,17 @@ pub(super) fn of<'a>(
         ("rows".into(), cells[1] as f64),
     ];
     let passed = passed.into_iter().flatten().collect();
-    for (list, values) in [("clock", clock), ("drift", drift), ("model", model), ("passed", passed)] {
+    for (list, values) in [("clock", clock), ("drift", drift), ("passed", passed)] {
         scalars.extend(values.iter().enumerate().map(|(k, value)| (format!("{list}_{k}"), *value)));
     }
     let state = state.into_iter().enumerate();
     let mut arrays: Vec<(String, Numbers)> =
         state.map(|(k, part)| (format!("state_{k}"), Numbers::Double(part))).collect();
     arrays.extend(maps.into_iter().map(|(name, map)| (name.to_owned(), Numbers::Single(map))));
-    let durations = durations.into_iter().enumerate();
-    arrays.extend(durations.map(|(k, part)| (format!("duration_{k}"), Numbers::Double(part))));
+    for (list, parts) in [("duration", durations), ("model", model)] {
+        let parts = parts.into_iter().enumerate();
+        arrays.extend(parts.map(|(k, part)| (format!("{list}_{k}"), Numbers::Double(part))));
+    }
     let (origin, past) = (origin.clone(), past.clone());
     Checkpoint { origin, past, ended, step: run.steps(), time: run.time(), scalars, arrays }
 }
@@ -115,12 +117,13 @@ pub(super) fn read(
     };
     let cells = ["columns", "rows"].map(|name| scalar(name) as usize);
     let at_rest = scalar("at_rest") == 1.0;
-    let (clock, drift, model) = (list("clock"), list("drift"), list("model"));
+    let (clock, drift) = (list("clock"), list("drift"));
     let passed = list("passed").as_chunks().0.to_vec();
     let names: Vec<&'static str> = now.maps.iter().map(|(name, _)| *name).collect();
-    let parts = now.state.len();
-    let state = (0..parts).map_while(|k| saved.take(&format!("state_{k}"))).map(Cow::Owned).collect();
-    let durations = (0..).map_while(|k| saved.take(&format!("duration_{k}"))).map(Cow::Owned).collect();
+    let mut arrays = |list: &str| -> Vec<Cow<'static, [f64]>> {
+        (0..).map_while(|k| saved.take(&format!("{list}_{k}"))).map(Cow::Owned).collect()
+    };
+    let [state, durations, model] = ["state", "duration", "model"].map(&mut arrays);
     let single = |values: Vec<f64>| Cow::Owned(values.into_iter().map(|value| value as f32).collect());
     let maps = names.into_iter().filter_map(|name| Some((name, single(saved.take(name)?)))).collect();
     let (ended, past) = (saved.ended, std::mem::take(&mut saved.past));

@@ -2,7 +2,7 @@
 
 use super::start::BESIDE;
 use crate::describe::{Line, axis, case, effort, memory, range, written};
-use crate::memory::Size;
+use crate::memory::{Drawn, Size};
 use granflow_case::sandpile::{Edge, Pile, Plan, Poured, SchemeName, TablePlan};
 use granflow_case::{Axis, Frames, RunPlan, Until};
 use granflow_engine::simulation::Simulation;
@@ -32,9 +32,9 @@ pub(crate) fn lines(run: &RunPlan, plan: &Plan) -> Vec<Line> {
 /// Bytes of the two layers in a cell, and of what the equilibrium takes beside them while it is found.
 const STATE: usize = 16;
 const EQUILIBRIUM: usize = 100;
-/// What pictures of a table take at once \[bytes\], and numbers that figures of a line hold for each cell and frame: measured.
-const PICTURES: f64 = 20e6;
-const PROFILES: f64 = 5.0;
+/// What pictures of a line and of a table take: measured.
+const ON_LINE: Drawn = Drawn { figure: 18e6, picture: 15e6, of_ensemble: 0.0, held: 8.0 };
+const ON_TABLE: Drawn = Drawn { figure: 40e6, picture: 66e6, of_ensemble: 0.0, held: 0.0 };
 
 fn on<const D: usize>(run: &RunPlan, Pile { table: plan, sources }: &Pile<D>, axes: &[&Axis]) -> Vec<Line> {
     let cell: f64 = axes.iter().map(|axis| axis.width()).product();
@@ -74,7 +74,7 @@ fn size<const D: usize>(run: &RunPlan, nodes: usize, sources: usize) -> Size {
     let before = if instants && run.scheme != SchemeName::FirstOrder.as_str() { STATE } else { 0 };
     let direct = run.ends.until == Some(Until::Equilibrium);
     let beside = BESIDE + if direct { EQUILIBRIUM } else { before };
-    let drawn = if D == 1 { PROFILES } else { PICTURES };
+    let drawn = if D == 1 { ON_LINE } else { ON_TABLE };
     let bytes = (simulation + beside) as f64 + sources as f64 / nodes as f64;
     Size {
         reading: 0.0,
@@ -82,6 +82,7 @@ fn size<const D: usize>(run: &RunPlan, nodes: usize, sources: usize) -> Size {
         line: D == 1,
         setup: bytes,
         run: bytes,
+        shared: 0.0,
         saved: STATE as f64,
         maps: 3,
         frame: 2 * nodes,

@@ -6,6 +6,7 @@ use crate::model::Domain;
 use crate::run::{CellOf, Field, Laws, Maps, Numbers, Physics, Record, Value};
 use granflow_engine::simulation::Simulation;
 use granflow_model::hadeler_kuttler::scheme::HadelerKuttler;
+use std::borrow::Cow;
 use std::sync::Arc;
 
 /// A table with what is poured on it, since when that flows as it does now, and until when.
@@ -69,11 +70,16 @@ impl<const D: usize> Physics<D> for Pouring<D> {
         self.changes_at
     }
 
-    fn save(&self) -> Vec<f64> {
-        vec![self.poured_at, self.changes_at]
+    fn save(&self) -> Vec<Cow<'_, [f64]>> {
+        vec![Cow::Owned(vec![self.poured_at, self.changes_at])]
     }
-    fn restore(&mut self, simulation: &mut Simulation<D, HadelerKuttler>, saved: &[f64]) -> bool {
-        let &[poured_at, changes_at] = saved else { return false };
+    fn restore(
+        &mut self,
+        simulation: &mut Simulation<D, HadelerKuttler>,
+        saved: &[Cow<'static, [f64]>],
+    ) -> bool {
+        let [times] = saved else { return false };
+        let [poured_at, changes_at] = **times else { return false };
         if self.sand.equilibrium.is_none() {
             // Before its first step a pile has the sources of time 0.
             self.pour(simulation, poured_at.max(0.0));

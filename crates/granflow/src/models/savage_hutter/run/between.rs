@@ -3,6 +3,7 @@
 use crate::run::{Maps, Numbers};
 use granflow_engine::simulation::Simulation;
 use granflow_model::scheme::Scheme;
+use std::borrow::Cow;
 
 /// Something that acts between two steps.
 pub(super) trait BetweenSteps<const D: usize, S: Scheme<D, f64>>: Send + Sync {
@@ -21,7 +22,7 @@ pub(super) trait BetweenSteps<const D: usize, S: Scheme<D, f64>>: Send + Sync {
         0.0
     }
     /// What a checkpoint must keep: always as many numbers.
-    fn save(&self) -> Vec<f64>;
+    fn save(&self) -> Cow<'_, [f64]>;
     /// Take up so many numbers again; the state follows. False where they do not fit.
     fn restore(&mut self, simulation: &mut Simulation<D, S>, saved: &[f64]) -> bool;
     /// For the summary.

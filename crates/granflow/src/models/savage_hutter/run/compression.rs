@@ -8,6 +8,7 @@ use granflow_model::savage_hutter::Flow;
 use granflow_model::savage_hutter::earth_pressure::{Mass, excess, stresses};
 use granflow_model::savage_hutter::ground::Bed;
 use granflow_model::scheme::{Boundary, Scheme};
+use std::borrow::Cow;
 use std::collections::BTreeMap;
 
 /// What compression adds to the earth pressure of a scheme.
@@ -170,8 +171,8 @@ where
         }
     }
 
-    fn save(&self) -> Vec<f64> {
-        Vec::new()
+    fn save(&self) -> Cow<'_, [f64]> {
+        Cow::Borrowed(&[])
     }
 
     fn restore(&mut self, _simulation: &mut Simulation<D, S>, saved: &[f64]) -> bool {

@@ -9,7 +9,7 @@ use super::terrain;
 use crate::StartError;
 use crate::describe::{Line, axis, case, effort, range};
 use crate::inputs::Inputs;
-use crate::memory::{Size, fits};
+use crate::memory::{Drawn, Size, fits};
 use crate::model::{At, Kind, Quantity};
 use crate::run::Run;
 use crate::watch::Watch;
@@ -69,16 +69,17 @@ pub(crate) fn terrain(run: &RunPlan, plan: &OnTerrain, inputs: &Inputs) -> Resul
     // Mass and pull are those of all releases together.
     loaded.start_all();
     let mut mountain = terrain::simulate(run, plan, loaded)?;
-    let mut begun = Start::of((run, inputs), &mut *mountain, READ, PICTURES[1], |_| true)?;
+    let mut begun = Start::of((run, inputs), &mut *mountain, READ, ON_MOUNTAIN, |_| true)?;
     begun.size.reading = reading;
+    begun.size.shared = SHARED;
     if let Some(entrainment) = &plan.entrainment {
-        // The layer, what was taken of it, and the bed where it sinks.
-        begun.size.run += 16.0 + if entrainment.lower_bed { 8.0 } else { 0.0 };
+        // The layer, what was taken of it, its map at the end, and the bed where it sinks.
+        begun.size.run += 24.0 + if entrainment.lower_bed { 8.0 } else { 0.0 };
         begun.size.saved += 8.0;
         begun.size.maps += 1;
     }
     if plan.forest_breaks_at.is_some() {
-        begun.size.run += 8.0;
+        begun.size.run += 16.0;
         begun.size.saved += 8.0;
         begun.size.maps += 1;
     }
@@ -90,10 +91,14 @@ pub(crate) fn terrain(run: &RunPlan, plan: &OnTerrain, inputs: &Inputs) -> Resul
 /// Bytes for each cell of what is read before a simulation of a mountain is made: its elevation.
 #[cfg(feature = "geo")]
 const READ: f64 = 8.0;
-/// What pictures of a plane and of a mountain take at once \[bytes\], and numbers that figures of a line hold for each cell and
-/// frame: measured.
-const PICTURES: [f64; 2] = [20e6, 45e6];
-const PROFILES: f64 = 10.0;
+/// Bytes for each cell that the members of an ensemble share: elevation, its fits, the elevation that is shown.
+#[cfg(feature = "geo")]
+const SHARED: f64 = 56.0;
+/// What pictures of a line, of a plane and of a mountain take: measured.
+const ON_LINE: Drawn = Drawn { figure: 48e6, picture: 15e6, of_ensemble: 12e6, held: 10.0 };
+const ON_PLANE: Drawn = Drawn { figure: 8e6, picture: 11e6, of_ensemble: 25e6, held: 0.0 };
+#[cfg(feature = "geo")]
+const ON_MOUNTAIN: Drawn = Drawn { figure: 25e6, picture: 28e6, of_ensemble: 54e6, held: 0.0 };
 
 /// How the state at the start would move, and how large the run is.
 struct Start {
@@ -114,7 +119,7 @@ impl Start {
         (run, inputs): (&RunPlan, &Inputs),
         start: &mut dyn Run,
         beside: f64,
-        pictures: f64,
+        pictures: Drawn,
         within: impl Fn(usize) -> bool,
     ) -> Result<Start, StartError> {
         let watch = Watch::of(run, inputs, start)?;
@@ -137,13 +142,14 @@ impl Start {
             line,
             reading: 0.0,
             setup: start.stepper().bytes_per_cell(false) as f64 + beside,
-            // Two arrays for each map of durations.
-            run: start.bytes_per_cell(instants) as f64 + 16.0 * durations as f64,
+            // Two arrays for each map of durations, and the map itself at the end.
+            run: start.bytes_per_cell(instants) as f64 + 24.0 * durations as f64,
+            shared: 0.0,
             // Components of the state, and four maps in single precision.
             saved: 8.0 * start.stepper().components() as f64 + 16.0 + 16.0 * durations as f64,
             maps: plane.model().of_kind(Kind::Map).filter(|map| kept(map)).count() + durations,
             frame: plane.series().iter().map(|field| field.length).sum(),
-            drawn: if line { PROFILES } else { pictures },
+            drawn: if line { ON_LINE } else { pictures },
         };
         Ok(Start { volume: totals.volume, wet: totals.wet, pull, rate, size, watched })
     }
@@ -160,10 +166,10 @@ fn at_start(run: &RunPlan, chute: Chuted, inputs: &Inputs, mass: &Mass) -> Resul
     let cells = columns * rows;
     // Where a gauge or a section lies only the whole can say.
     if cells <= TOGETHER || !run.watched.is_empty() {
-        return Start::of((run, inputs), &mut *chute::start(run, plan, laid)?, 0.0, PICTURES[0], |_| true);
+        return Start::of((run, inputs), &mut *chute::start(run, plan, laid)?, 0.0, ON_PLANE, |_| true);
     }
     let look = |part: Part, within: &dyn Fn(usize) -> bool| -> Result<Start, StartError> {
-        Start::of((run, inputs), &mut *chute::part(run, chute, part)?, 0.0, PICTURES[0], within)
+        Start::of((run, inputs), &mut *chute::part(run, chute, part)?, 0.0, ON_PLANE, within)
     };
     let few = look(Part { from: [0; 2], cells: [columns.min(3), rows.min(3)] }, &|_| true)?.size;
     fits(cells, few.setup as usize)?;

@@ -12,6 +12,7 @@ use granflow_model::savage_hutter::erosion::{ErodibleLayer, Erosion, FlowOver};
 use granflow_model::savage_hutter::friction::{AnyLaw, LocalFriction};
 use granflow_model::savage_hutter::ground::{Bed, Terrain};
 use granflow_model::scheme::Scheme;
+use std::borrow::Cow;
 use std::sync::Arc;
 
 /// An erodible layer on a mountain.
@@ -124,8 +125,8 @@ where
         give(simulation, taken.into_iter().map(|(_, _, state)| state).collect());
     }
 
-    fn save(&self) -> Vec<f64> {
-        self.taken.clone()
+    fn save(&self) -> Cow<'_, [f64]> {
+        Cow::Borrowed(&self.taken)
     }
 
     fn restore(&mut self, simulation: &mut Simulation<2, S>, saved: &[f64]) -> bool {

@@ -9,6 +9,7 @@ use granflow_model::real::CompensatedSum;
 use granflow_model::savage_hutter::Flow;
 use granflow_model::savage_hutter::ground::Bed;
 use granflow_model::scheme::Scheme;
+use std::borrow::Cow;
 
 /// Verfahren 5 does not conserve mass. The published runs gain up to 0.4 %; beyond ten times that nothing is left of its result.
 const VERFAHREN_5: f64 = 0.04;
@@ -97,25 +98,21 @@ where
     fn came(&self) -> f64 {
         self.between.iter().map(|one| one.came()).fold(0.0, f64::max)
     }
-    fn save(&self) -> Vec<f64> {
+    fn save(&self) -> Vec<Cow<'_, [f64]>> {
         if self.between.is_empty() {
             return Vec::new();
         }
-        std::iter::once(self.until).chain(self.between.iter().flat_map(|one| one.save())).collect()
+        let until = Cow::Owned(vec![self.until]);
+        std::iter::once(until).chain(self.between.iter().map(|one| one.save())).collect()
     }
-    fn restore(&mut self, simulation: &mut Simulation<D, S>, saved: &[f64]) -> bool {
-        if self.between.is_empty() {
-            return saved.is_empty();
+    fn restore(&mut self, simulation: &mut Simulation<D, S>, saved: &[Cow<'static, [f64]>]) -> bool {
+        let fits = self.save().iter().map(|list| list.len()).eq(saved.iter().map(|list| list.len()));
+        if !fits {
+            return false;
         }
-        let [until, rest @ ..] = saved else { return false };
-        self.until = *until;
-        let mut rest = rest;
-        let fits = self.between.iter_mut().all(|one| {
-            let Some((own, others)) = rest.split_at_checked(one.save().len()) else { return false };
-            rest = others;
-            one.restore(simulation, own)
-        });
-        fits && rest.is_empty()
+        let Some((until, lists)) = saved.split_first() else { return true };
+        self.until = until[0];
+        self.between.iter_mut().zip(lists).all(|(one, list)| one.restore(simulation, list))
     }
     fn is_settled(&self, time: f64) -> bool {
         self.between.iter().all(|one| one.is_settled(time))

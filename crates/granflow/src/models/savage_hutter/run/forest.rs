@@ -9,6 +9,7 @@ use granflow_model::savage_hutter::Flow;
 use granflow_model::savage_hutter::friction::Parameters;
 use granflow_model::savage_hutter::ground::Bed;
 use granflow_model::scheme::Scheme;
+use std::borrow::Cow;
 use std::sync::Arc;
 
 /// A forest that can break.
@@ -52,8 +53,8 @@ where
         simulation.apply_to(broken.into_iter().map(|cell| grid.index(cell)), Parameters::on_bare_bed);
     }
 
-    fn save(&self) -> Vec<f64> {
-        self.broken.clone()
+    fn save(&self) -> Cow<'_, [f64]> {
+        Cow::Borrowed(&self.broken)
     }
 
     fn restore(&mut self, simulation: &mut Simulation<2, S>, saved: &[f64]) -> bool {

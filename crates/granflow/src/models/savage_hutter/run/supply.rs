@@ -7,6 +7,7 @@ use granflow_engine::simulation::Simulation;
 use granflow_model::savage_hutter::Flow;
 use granflow_model::savage_hutter::ground::Bed;
 use granflow_model::scheme::Scheme;
+use std::borrow::Cow;
 use std::collections::BTreeMap;
 
 /// A release that does not start with the run.
@@ -134,7 +135,7 @@ where
         self.came
     }
 
-    fn save(&self) -> Vec<f64> {
+    fn save(&self) -> Cow<'_, [f64]> {
         let came = self.late.iter().map(|late| f64::from(u8::from(late.came)));
         let entered = self.inflows.iter().flat_map(|inflow| [inflow.entered, inflow.until]);
         std::iter::once(self.came).chain(came).chain(entered).collect()
