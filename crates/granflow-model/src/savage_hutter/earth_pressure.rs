@@ -136,6 +136,36 @@ fn together(cells: &[Mass], push: f64, at_wall: bool) -> Vec<f64> {
     cells.iter().map(|cell| cell.mass * (velocity - (cell.velocity - base))).collect()
 }
 
+/// A cell of a line that is to stand still.
+#[derive(Clone, Copy, Debug)]
+pub struct Standing {
+    /// Its momentum along the line, which stresses have to take.
+    pub momentum: f64,
+    /// What its friction takes of a push along the line, either way, beyond what it holds already.
+    pub spare: f64,
+    /// The most that compression adds at its face to the next cell ([`excess`]); of no use in the last one.
+    pub most: f64,
+}
+
+/// Can stresses between nothing and `most`, with the friction of cells at rest, bring a line to rest? An end at a wall has in `walls` the
+/// most that compression adds there; at other ends nothing does.
+///
+/// The stress P of a face less that of the one before is the momentum of the cell between them, but for its `spare`: from face to face an
+/// interval of what P can be.
+#[must_use]
+pub fn holds(line: &[Standing], walls: [Option<f64>; 2]) -> bool {
+    let (mut least, mut largest) = (0.0, walls[0].unwrap_or(0.0));
+    for (k, cell) in line.iter().enumerate() {
+        let most = if k + 1 == line.len() { walls[1].unwrap_or(0.0) } else { cell.most };
+        least = (least + cell.momentum - cell.spare).max(0.0);
+        largest = (largest + cell.momentum + cell.spare).min(most);
+        if least > largest {
+            return false;
+        }
+    }
+    true
+}
+
 /// What can be seen from the last knot of the string: the ends of the tube that bound it, below the upper one (P = 0) a chain with
 /// growing velocities, above the lower one (P = most) one with falling.
 #[cfg(feature = "std")]
@@ -304,6 +334,20 @@ mod tests {
                 }
             }
         }
+    }
+
+    #[test]
+    fn a_line_is_held_by_what_its_stresses_and_its_friction_can_take() {
+        let cell = |momentum: f64, spare: f64, most: f64| Standing { momentum, spare, most };
+        let line = [cell(1.0, 0.0, 2.0), cell(0.0, 0.5, 2.0), cell(0.0, 0.6, 2.0)];
+        assert!(holds(&line, [None; 2]));
+        // The other way it leans on nothing.
+        assert!(!holds(&line.map(|cell| Standing { momentum: -cell.momentum, ..cell }), [None; 2]));
+        assert!(holds(&line.map(|cell| Standing { momentum: -cell.momentum, ..cell }), [Some(1.0), None]));
+        assert!(!holds(&line.map(|cell| Standing { spare: 0.4, ..cell }), [None; 2]), "too little friction");
+        assert!(holds(&line.map(|cell| Standing { spare: 0.4, ..cell }), [None, Some(0.2)]), "a wall");
+        assert!(!holds(&line.map(|cell| Standing { most: 0.9, ..cell }), [None; 2]), "too much stress");
+        assert!(holds(&[], [None; 2]));
     }
 
     #[test]

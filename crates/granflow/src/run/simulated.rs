@@ -146,7 +146,7 @@ impl<const D: usize, P: Physics<D>> Run for Simulated<D, P> {
         if self.simulation.is_shown() {
             return false;
         }
-        let still = self.simulation.at_rest() || self.simulation.rate() == 0.0;
+        let still = self.simulation.at_rest() || self.simulation.rate() == 0.0 || self.physics.is_held();
         still && self.is_settled()
     }
     fn bring(&mut self) {

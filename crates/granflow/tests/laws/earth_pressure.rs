@@ -142,6 +142,41 @@ fn a_pile_that_holds_is_not_started_by_the_switch() {
     }
 }
 
+/// A layer that slides from a steep part of a chute against one on a flat part is held by stresses between both coefficients: it rests
+/// when its fall is over, on any grid, and as one pile.
+#[test]
+fn what_passive_stress_holds_comes_to_rest_on_any_grid() {
+    let slab = |scheme: &str, cells: usize| {
+        let text = format!(
+            "grid.x = {{ from = -2.0, to = 18.0, cells = {cells} }}\ngrid.boundary = \"wall\"\n\
+             initial.thickness.formula = \"if(x>0, if(x<14, 1, 0), 0)\"\nscheme.name = \"{scheme}\"\n\
+             time = {{ until = \"rest\", end = 100.0, trickle = 0.0 }}\n[material]\n\
+             slope = {{ x = [4.5, 5.5], angle = [\"28 deg\", \"10 deg\"] }}\nfriction.coulomb = {{ angle = \"20 deg\" }}\n\
+             earth_pressure.active_passive = {{ internal = \"40 deg\" }}\n"
+        );
+        let mut run = start(&text);
+        assert!(run.to_rest(100.0).unwrap(), "{scheme}, {cells} cells");
+        // The fall takes 8, and the run looks every 64 steps.
+        assert!(run.time() < 30.0, "{scheme}, {cells} cells: {}", run.time());
+        assert_eq!(run.totals().energy, 0.0);
+        let field = run.field("thickness").unwrap();
+        let h: Vec<f64> = field.iter().collect();
+        let volume: f64 = h.iter().sum();
+        (h, volume)
+    };
+    for scheme in ["energy_stable", "energy_stable_2"] {
+        let piles = [200, 400, 800].map(|cells| slab(scheme, cells));
+        let apart = |[(coarse, volume), (fine, _)]: [&(Vec<f64>, f64); 2]| {
+            let means = fine
+                .chunks(fine.len() / coarse.len())
+                .map(|part| part.iter().sum::<f64>() / part.len() as f64);
+            coarse.iter().zip(means).map(|(a, b)| (a - b).abs()).sum::<f64>() / (2.0 * volume)
+        };
+        let [far, near] = [apart([&piles[0], &piles[2]]), apart([&piles[1], &piles[2]])];
+        assert!(near < 0.01 && far < 0.05, "{scheme}: {far} {near}");
+    }
+}
+
 #[test]
 fn colliding_masses_keep_momentum_and_symmetry_and_lose_energy() {
     for scheme in SCHEMES {

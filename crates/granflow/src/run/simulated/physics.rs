@@ -78,6 +78,10 @@ pub trait Physics<const D: usize>: Send + Sync + 'static {
     fn is_settled(&self, _time: f64) -> bool {
         true
     }
+    /// Nothing moves, for it is held by what the scheme does not know.
+    fn is_held(&self) -> bool {
+        false
+    }
     /// Fields have places without a value.
     fn blanks(&self) -> bool {
         false

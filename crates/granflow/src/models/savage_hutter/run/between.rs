@@ -17,6 +17,10 @@ pub(super) trait BetweenSteps<const D: usize, S: Scheme<D, f64>>: Send + Sync {
     fn is_settled(&self, _time: f64) -> bool {
         true
     }
+    /// It holds all that moved; were the run to go on, the step would start it again.
+    fn is_held(&self) -> bool {
+        false
+    }
     /// The time at which something last came by itself.
     fn came(&self) -> f64 {
         0.0

@@ -1,11 +1,12 @@
 //! The passive earth pressure, which acts against compression between two steps, axis by axis.
 
 use super::between::BetweenSteps;
+use crate::run::trickle;
 use granflow_case::avalanche::Material;
 use granflow_engine::grid::Grid;
 use granflow_engine::simulation::Simulation;
 use granflow_model::savage_hutter::Flow;
-use granflow_model::savage_hutter::earth_pressure::{Mass, excess, stresses};
+use granflow_model::savage_hutter::earth_pressure::{Mass, Standing, excess, holds, stresses};
 use granflow_model::savage_hutter::ground::Bed;
 use granflow_model::scheme::{Boundary, Scheme};
 use std::borrow::Cow;
@@ -19,6 +20,8 @@ pub(super) struct Compression {
     mu: f64,
     /// A thinner layer is held.
     film: f64,
+    /// All that moved stands, held by stresses.
+    held: bool,
 }
 
 /// So much of the largest momentum of a line is left by rounding where none is to be left.
@@ -40,7 +43,7 @@ impl Compression {
     pub fn of(material: &Material, film: f64) -> Option<Self> {
         let [active, passive] = [material.pressure_coefficient, material.passive_coefficient];
         let mu = material.mu.unwrap_or(0.0);
-        (passive > active).then(|| Compression { excess: passive / active - 1.0, mu, film })
+        (passive > active).then(|| Compression { excess: passive / active - 1.0, mu, film, held: false })
     }
 
     /// A cell as a line along `axis` sees it, if it is more than a film.
@@ -66,68 +69,134 @@ impl Compression {
         Some(Wet { index, state, along, head: ground.head(), fast })
     }
 
-    /// The wet cells side by side to be pressed, of the line along `axis` from `begin`; `moving` are the places of its moving cells,
-    /// growing. What moves in them has more energy than friction takes in a step: the last of it comes to rest as under k_act, for
-    /// stresses would take from step to step a share of what is left.
-    fn runs<const D: usize, S>(
-        &self,
-        simulation: &Simulation<D, S>,
-        begin: [usize; D],
-        (axis, dt): (usize, f64),
-        moving: &[usize],
-    ) -> Vec<Vec<Wet<D>>>
+    /// All wet cells side by side along `axis` among which something moves, after a step `dt`.
+    fn runs<const D: usize, S>(&self, simulation: &Simulation<D, S>, axis: usize, dt: f64) -> Vec<Side<D>>
     where
         S: Scheme<D, f64, State = Flow<D, f64>>,
         S::Ground: Bed<D, f64>,
     {
-        let wet = |at: usize| {
-            let mut index = begin;
-            index[axis] = at;
-            self.wet(simulation, index, (axis, dt))
-        };
-        let end = simulation.grid().cells[axis];
-        let (mut runs, mut seen) = (Vec::new(), 0);
-        for &at in moving {
-            if at < seen {
-                continue;
-            }
-            let Some(middle) = wet(at) else { continue };
-            let mut run: Vec<Wet<D>> = (0..at).rev().map_while(wet).collect();
-            run.reverse();
-            run.push(middle);
-            run.extend((at + 1..end).map_while(wet));
-            seen = run.last().map_or(end, |last| last.index[axis] + 1);
-            if run.iter().map(|cell| cell.fast).sum::<f64>() > 0.0 {
-                runs.push(run);
+        let grid = simulation.grid();
+        let moving = simulation.of_moving(|index, here| (!here.state.is_still()).then_some(index));
+        let mut lines: BTreeMap<[usize; D], Vec<usize>> = BTreeMap::new();
+        for mut index in moving {
+            let at = std::mem::replace(&mut index[axis], 0);
+            lines.entry(index).or_default().push(at);
+        }
+        let mut runs = Vec::new();
+        for (begin, mut moving) in lines {
+            moving.sort_unstable();
+            let wet = |at: usize| {
+                let mut index = begin;
+                index[axis] = at;
+                self.wet(simulation, index, (axis, dt))
+            };
+            let mut seen = 0;
+            for at in moving {
+                if at < seen {
+                    continue;
+                }
+                let Some(middle) = wet(at) else { continue };
+                let mut run: Vec<Wet<D>> = (0..at).rev().map_while(wet).collect();
+                run.reverse();
+                run.push(middle);
+                run.extend((at + 1..grid.cells[axis]).map_while(wet));
+                seen = run.last().map_or(seen, |last| last.index[axis] + 1);
+                runs.push(self.side_by_side(grid, run, axis, dt / grid.size[axis]));
             }
         }
         runs
     }
 
-    /// The states of wet cells side by side along `axis` after a step `dt`.
-    fn pressed<const D: usize>(
+    /// Cells side by side along `axis` with the most that compression adds between them in a step with dt/dx = `lambda`.
+    fn side_by_side<const D: usize>(
         &self,
         grid: &Grid<D>,
-        cells: &[Wet<D>],
-        (axis, dt): (usize, f64),
-    ) -> Vec<([usize; D], Flow<D, f64>)> {
-        let lambda = dt / grid.size[axis];
-        let (first, last) = (&cells[0], &cells[cells.len() - 1]);
-        let ends = [first.index[axis] == 0, last.index[axis] + 1 == grid.cells[axis]];
-        let walls = [0, 1].map(|side| ends[side] && grid.boundary[axis][side] == Boundary::Wall);
+        cells: Vec<Wet<D>>,
+        axis: usize,
+        lambda: f64,
+    ) -> Side<D> {
         let most =
             |a: &Wet<D>, b: &Wet<D>| excess(self.excess, [a.head, b.head], [a.state.h, b.state.h], lambda);
-        let of = |(k, cell): (usize, &Wet<D>)| Mass {
+        let at = [&cells[0], &cells[cells.len() - 1]];
+        let ends = [at[0].index[axis] == 0, at[1].index[axis] + 1 == grid.cells[axis]];
+        let wall = |side: usize| ends[side] && grid.boundary[axis][side] == Boundary::Wall;
+        let walls = [0, 1].map(|side| wall(side).then(|| most(at[side], at[side])));
+        let next = cells.windows(2).map(|pair| most(&pair[0], &pair[1])).chain([0.0]).collect();
+        Side { axis, most: next, walls, cells }
+    }
+
+    /// Stop what moves, if stresses and the friction of cells at rest can hold all of it.
+    fn stop_if_held<const D: usize, S>(&self, simulation: &mut Simulation<D, S>, dt: f64) -> bool
+    where
+        S: Scheme<D, f64, State = Flow<D, f64>>,
+        S::Ground: Bed<D, f64>,
+    {
+        let pulls = simulation.yield_ratios();
+        let columns = simulation.grid().cells[0];
+        let standing = |axis: usize, cell: &Wet<D>, most: f64| {
+            let ground = simulation.ground(cell.index);
+            let number = cell.index[0] + cell.index.get(1).map_or(0, |row| row * columns);
+            let friction = cell.state.h * self.mu * ground.weight_at_rest() * dt;
+            let u = cell.state.velocity();
+            let (speed, pull) = (ground.square(u).sqrt(), pulls[number]);
+            if pull > 1.0 && speed > 0.0 {
+                // Its direction is that in which it moves.
+                let [more, less] = [speed, -speed].map(|by| {
+                    ground.square(std::array::from_fn(|k| if k == axis { u[k] + by } else { u[k] }))
+                });
+                let along = 0.25 * (more - less) / (speed * speed);
+                return Standing { momentum: friction * (pull - 1.0) * along, spare: 0.0, most };
+            }
+            // What one axis takes is not there for the other.
+            let spare = friction * (1.0 - pull).max(0.0) / (cell.along[axis] * D as f64).sqrt();
+            Standing { momentum: 0.0, spare, most }
+        };
+        let held = (0..D).all(|axis| {
+            self.runs(simulation, axis, dt).iter().all(|run| {
+                let line: Vec<Standing> =
+                    run.cells.iter().zip(&run.most).map(|(cell, most)| standing(axis, cell, *most)).collect();
+                holds(&line, run.walls)
+            })
+        });
+        let still = |index, h| (index, Flow { h, q: [0.0; D] });
+        let stopped = simulation.of_moving(|index, here| Some(still(index, here.state.h)));
+        if !held || stopped.is_empty() {
+            return false;
+        }
+        simulation.change(stopped);
+        true
+    }
+}
+
+/// Wet cells side by side along an axis.
+struct Side<const D: usize> {
+    axis: usize,
+    cells: Vec<Wet<D>>,
+    /// The most that compression adds at the face of each to the next.
+    most: Vec<f64>,
+    /// The same at an end that is a wall.
+    walls: [Option<f64>; 2],
+}
+
+impl<const D: usize> Side<D> {
+    /// Has what moves more energy than friction takes in a step? The last of it comes to rest as under k_act, for stresses would take
+    /// from step to step a share of what is left.
+    fn is_fast(&self) -> bool {
+        self.cells.iter().map(|cell| cell.fast).sum::<f64>() > 0.0
+    }
+
+    /// The states that stresses leave.
+    fn pressed(&self) -> Vec<([usize; D], Flow<D, f64>)> {
+        let axis = self.axis;
+        let of = |(cell, most): (&Wet<D>, &f64)| Mass {
             mass: cell.state.h / cell.along[axis],
             velocity: cell.state.velocity()[axis],
-            most: cells.get(k + 1).map_or(0.0, |next| most(cell, next)),
+            most: *most,
         };
-        let line: Vec<Mass> = cells.iter().enumerate().map(of).collect();
-        let at = [first, last];
-        let walls = [0, 1].map(|side| walls[side].then(|| most(at[side], at[side])));
-        let pushes = stresses(&line, walls);
-        let largest = cells.iter().map(|cell| cell.state.q[axis].abs()).fold(0.0, f64::max);
-        let pressed = cells.iter().zip(pushes).filter(|(_, push)| *push != 0.0);
+        let line: Vec<Mass> = self.cells.iter().zip(&self.most).map(of).collect();
+        let pushes = stresses(&line, self.walls);
+        let largest = self.cells.iter().map(|cell| cell.state.q[axis].abs()).fold(0.0, f64::max);
+        let pressed = self.cells.iter().zip(pushes).filter(|(_, push)| *push != 0.0);
         pressed
             .map(|(cell, push)| {
                 let q = std::array::from_fn(|k| {
@@ -150,32 +219,29 @@ where
         if dt <= 0.0 {
             return;
         }
-        let grid = *simulation.grid();
+        let mut fast = false;
         for axis in 0..D {
-            let moving = simulation.of_moving(|index, here| (!here.state.is_still()).then_some(index));
-            let mut lines: BTreeMap<[usize; D], Vec<usize>> = BTreeMap::new();
-            for mut index in moving {
-                let at = std::mem::replace(&mut index[axis], 0);
-                lines.entry(index).or_default().push(at);
-            }
-            let mut states = Vec::new();
-            for (begin, mut moving) in lines {
-                moving.sort_unstable();
-                for run in self.runs(simulation, begin, (axis, dt), &moving) {
-                    states.extend(self.pressed(&grid, &run, (axis, dt)));
-                }
-            }
+            let runs = self.runs(simulation, axis, dt);
+            let states: Vec<_> = runs.iter().filter(|run| run.is_fast()).flat_map(Side::pressed).collect();
+            fast |= runs.iter().any(Side::is_fast);
             if !states.is_empty() {
                 simulation.change(states);
             }
         }
+        self.held = !fast && trickle::is_due(simulation.step()) && self.stop_if_held(simulation, dt);
+    }
+
+    fn is_held(&self) -> bool {
+        self.held
     }
 
     fn save(&self) -> Cow<'_, [f64]> {
-        Cow::Borrowed(&[])
+        Cow::Owned(vec![f64::from(u8::from(self.held))])
     }
 
     fn restore(&mut self, _simulation: &mut Simulation<D, S>, saved: &[f64]) -> bool {
-        saved.is_empty()
+        let [held] = saved else { return false };
+        self.held = *held != 0.0;
+        true
     }
 }

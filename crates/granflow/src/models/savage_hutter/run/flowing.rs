@@ -117,6 +117,9 @@ where
     fn is_settled(&self, time: f64) -> bool {
         self.between.iter().all(|one| one.is_settled(time))
     }
+    fn is_held(&self) -> bool {
+        self.between.iter().any(|one| one.is_held())
+    }
     fn laws(&self) -> Laws {
         // It chooses a flux for each cell, so that the two sides of a face may differ (errata, 5).
         let changes = self.name == SchemeName::Verfahren5.as_str();
