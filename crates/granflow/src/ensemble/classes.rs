@@ -33,6 +33,14 @@ impl Classes {
         }
     }
 
+    /// Could these be counts of so many values at most, of which `largest` is the largest, 0 of none?
+    pub fn is_possible(&self, largest: f64, most: u32, bits: u32) -> bool {
+        let Some(last) = self.counts.last() else { return largest == 0.0 };
+        let counted: u64 = self.counts.iter().map(|count| u64::from(*count)).sum();
+        let end = u64::from(self.first) + self.counts.len() as u64;
+        *last > 0 && largest > 0.0 && end == u64::from(class(largest, bits)) + 1 && counted <= u64::from(most)
+    }
+
     fn count(&mut self, class: u32, count: u32) {
         if self.counts.is_empty() {
             self.first = class;
@@ -105,6 +113,11 @@ mod tests {
         let whole = counted(&values);
         let back: Vec<f64> = values.iter().rev().copied().collect();
         assert_eq!(whole, counted(&back));
+        let largest = values.iter().copied().fold(0.0, f64::max);
+        assert!(whole.is_possible(largest, 300, 4) && !whole.is_possible(largest, 299, 4));
+        let moved = Classes { first: u32::MAX - 400, ..whole.clone() };
+        assert!(!moved.is_possible(largest, 300, 4) && !whole.is_possible(2.0 * largest, 300, 4));
+        assert!(Classes::default().is_possible(0.0, 300, 4) && !Classes::default().is_possible(1.0, 300, 4));
         let mut merged = counted(&values[200..]);
         merged.merge(&counted(&values[..120]));
         merged.merge(&Classes::default());

@@ -65,8 +65,8 @@ impl Ensemble {
         let mut reduced = self.empty();
         let read = decode(&mut Bytes(bytes), &header, self.plan.columns().len(), &mut reduced);
         let within = reduced.rows.keys().all(|number| *number < self.plan.members);
-        if read.is_none() || !within {
-            let problem = "its numbers are not those that it announces; compute this part again".to_owned();
+        if read.is_none() || !within || !reduced.is_possible() {
+            let problem = "its numbers are not those that it announces, or none that members add up to; compute this part again".to_owned();
             return Err(Error::Damaged { path: path.to_owned(), problem }.into());
         }
         Ok(reduced)

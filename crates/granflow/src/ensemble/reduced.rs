@@ -152,6 +152,16 @@ impl Reduced {
         }
     }
 
+    /// Could members have added up to this? What is read from a file may be anything, and a class far from the others would take 16 GiB.
+    pub(super) fn is_possible(&self) -> bool {
+        let most = self.computed();
+        self.reached.iter().all(|count| *count <= most)
+            && self.peaks.iter().all(|peaks| {
+                peaks.above.iter().flatten().all(|count| *count <= most)
+                    && (0..self.reached.len()).all(|cell| peaks.is_possible(cell, most, self.bits))
+            })
+    }
+
     /// Adds the members of another one; both must be of one ensemble.
     ///
     /// # Errors
@@ -175,6 +185,14 @@ impl Reduced {
 }
 
 impl Peaks {
+    fn is_possible(&self, cell: usize, most: u32, bits: Option<u32>) -> bool {
+        let (sum, largest) = (self.sums[cell], self.largest[cell]);
+        let counted = bits.is_none_or(|bits| self.classes[cell].is_possible(largest, most, bits));
+        (0..=i128::from(most) * (LARGEST * UNIT) as i128).contains(&sum)
+            && (0.0..=LARGEST).contains(&largest)
+            && counted
+    }
+
     /// The mean of `count` members in a cell, 0 for those that did not come.
     pub fn mean(&self, cell: usize, count: u32) -> f64 {
         self.sums[cell] as f64 / UNIT / f64::from(count)
