@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import _thread
+import signal
 import threading
 import time
 
@@ -131,6 +132,8 @@ def _slow() -> granflow.Case:
 
 @pytest.mark.parametrize("work", ["run", "simulation"])
 def test_ctrl_c_ends_a_run_soon(work):
+    # Started in the background of a script, Python ignores Ctrl-C.
+    signal.signal(signal.SIGINT, signal.default_int_handler)
     case = _slow()
     sim = granflow.Simulation(case) if work == "simulation" else None
     begun = time.monotonic()
