@@ -2,11 +2,12 @@
 
 use super::between::BetweenSteps;
 use crate::run::trickle;
-use granflow_case::avalanche::Material;
+use granflow_case::avalanche::{FOREST, Material};
 use granflow_engine::grid::Grid;
 use granflow_engine::simulation::Simulation;
 use granflow_model::savage_hutter::Flow;
 use granflow_model::savage_hutter::earth_pressure::{Mass, Standing, excess, holds, stresses};
+use granflow_model::savage_hutter::friction::{AnyLaw, LocalFriction};
 use granflow_model::savage_hutter::ground::Bed;
 use granflow_model::scheme::{Boundary, Scheme};
 use std::borrow::Cow;
@@ -18,6 +19,8 @@ pub(super) struct Compression {
     excess: f64,
     /// The friction coefficient of the bed.
     mu: f64,
+    /// The law that says what a cell at rest holds, if it is the same everywhere; else nothing is held by stresses.
+    law: Option<AnyLaw>,
     /// A thinner layer is held.
     film: f64,
     /// All that moved stands, held by stresses.
@@ -43,7 +46,10 @@ impl Compression {
     pub fn of(material: &Material, film: f64) -> Option<Self> {
         let [active, passive] = [material.pressure_coefficient, material.passive_coefficient];
         let mu = material.mu.unwrap_or(0.0);
-        (passive > active).then(|| Compression { excess: passive / active - 1.0, mu, film, held: false })
+        // Drag holds nothing, a layer is no law.
+        let same = material.in_space.iter().all(|parameter| parameter.index >= FOREST);
+        let law = same.then_some(material.law);
+        (passive > active).then(|| Compression { excess: passive / active - 1.0, mu, law, film, held: false })
     }
 
     /// A cell as a line along `axis` sees it, if it is more than a film.
@@ -131,12 +137,15 @@ impl Compression {
         S: Scheme<D, f64, State = Flow<D, f64>>,
         S::Ground: Bed<D, f64>,
     {
-        let pulls = simulation.yield_ratios();
+        let Some(law) = self.law else { return false };
+        let (pulls, here) = (simulation.yield_ratios(), law.parameters());
         let columns = simulation.grid().cells[0];
         let standing = |axis: usize, cell: &Wet<D>, most: f64| {
             let ground = simulation.ground(cell.index);
             let number = cell.index[0] + cell.index.get(1).map_or(0, |row| row * columns);
-            let friction = cell.state.h * self.mu * ground.weight_at_rest() * dt;
+            let (h, weight) = (cell.state.h, ground.weight_at_rest());
+            let holding = law.resistance_with(&here, ground.thickness(h), 0.0, weight, weight).holding;
+            let friction = h * holding * dt;
             let u = cell.state.velocity();
             let (speed, pull) = (ground.square(u).sqrt(), pulls[number]);
             if pull > 1.0 && speed > 0.0 {
