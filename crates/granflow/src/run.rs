@@ -17,7 +17,7 @@ mod saved;
 mod simulated;
 mod sink;
 mod step_size;
-pub(crate) mod trickle;
+mod trickle;
 
 pub use crate::entry::{Entry, sum};
 pub use crate::stop_reason::StopReason;

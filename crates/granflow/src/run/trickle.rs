@@ -11,7 +11,7 @@ use super::{Record, Run};
 const EVERY: u64 = 64;
 
 /// Is a look due after so many steps?
-pub(crate) fn is_due(steps: u64) -> bool {
+pub(super) fn is_due(steps: u64) -> bool {
     steps.is_multiple_of(EVERY)
 }
 

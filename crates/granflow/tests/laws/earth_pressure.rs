@@ -156,7 +156,7 @@ fn what_passive_stress_holds_comes_to_rest_on_any_grid() {
         );
         let mut run = start(&text);
         assert!(run.to_rest(100.0).unwrap(), "{scheme}, {cells} cells");
-        // The fall takes 8, and the run looks every 64 steps.
+        // The fall takes 8.
         assert!(run.time() < 30.0, "{scheme}, {cells} cells: {}", run.time());
         assert_eq!(run.totals().energy, 0.0);
         let field = run.field("thickness").unwrap();

@@ -1,7 +1,6 @@
 //! The passive earth pressure, which acts against compression between two steps, axis by axis.
 
 use super::between::BetweenSteps;
-use crate::run::trickle;
 use granflow_case::avalanche::{FOREST, Material};
 use granflow_engine::grid::Grid;
 use granflow_engine::simulation::Simulation;
@@ -29,6 +28,9 @@ pub(super) struct Compression {
 
 /// So much of the largest momentum of a line is left by rounding where none is to be left.
 const ROUNDING: f64 = 1e-14;
+
+/// So many steps, counted from the start of the run, lie between two looks whether all is held.
+const LOOK: u64 = 8;
 
 /// A wet cell of a line.
 struct Wet<const D: usize> {
@@ -237,7 +239,7 @@ where
                 simulation.change(states);
             }
         }
-        self.held = !fast && trickle::is_due(simulation.step()) && self.stop_if_held(simulation, dt);
+        self.held = !fast && simulation.step().is_multiple_of(LOOK) && self.stop_if_held(simulation, dt);
     }
 
     fn is_held(&self) -> bool {
