@@ -46,14 +46,23 @@ impl Raster {
             .predictor(Predictor::FloatingPoint);
         let builder = with_system(builder, self.crs.as_ref()).map_err(error)?;
         let folder = path.parent().filter(|p| !p.as_os_str().is_empty()).unwrap_or(Path::new("."));
-        let mut options = tempfile::Builder::new();
-        #[cfg(unix)]
-        options.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o666));
-        let mut file = options.tempfile_in(folder).map_err(|e| error(e.to_string()))?;
+        let mut file = temporary_in(folder).map_err(|e| error(e.to_string()))?;
         builder.write_2d_to(file.as_file_mut(), image.view()).map_err(|e| error(e.to_string()))?;
         file.persist(path).map_err(|e| error(e.to_string()))?;
         Ok(())
     }
+}
+
+/// A file that all may read who may read others of this user.
+#[cfg(unix)]
+fn temporary_in(folder: &Path) -> std::io::Result<tempfile::NamedTempFile> {
+    let all = std::os::unix::fs::PermissionsExt::from_mode(0o666);
+    tempfile::Builder::new().permissions(all).tempfile_in(folder)
+}
+
+#[cfg(not(unix))]
+fn temporary_in(folder: &Path) -> std::io::Result<tempfile::NamedTempFile> {
+    tempfile::NamedTempFile::new_in(folder)
 }
 
 fn with_system(builder: GeoTiffBuilder, crs: Option<&Crs>) -> Result<GeoTiffBuilder, String> {
