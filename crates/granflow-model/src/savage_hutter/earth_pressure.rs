@@ -344,8 +344,8 @@ mod tests {
         // The other way it leans on nothing.
         assert!(!holds(&line.map(|cell| Standing { momentum: -cell.momentum, ..cell }), [None; 2]));
         assert!(holds(&line.map(|cell| Standing { momentum: -cell.momentum, ..cell }), [Some(1.0), None]));
-        assert!(!holds(&line.map(|cell| Standing { spare: 0.4, ..cell }), [None; 2]), "too little friction");
-        assert!(holds(&line.map(|cell| Standing { spare: 0.4, ..cell }), [None, Some(0.2)]), "a wall");
+        assert!(!holds(&line.map(|cell| Standing { spare: 0.3, ..cell }), [None; 2]), "too little friction");
+        assert!(holds(&line.map(|cell| Standing { spare: 0.3, ..cell }), [None, Some(0.2)]), "a wall");
         assert!(!holds(&line.map(|cell| Standing { most: 0.9, ..cell }), [None; 2]), "too much stress");
         assert!(holds(&[], [None; 2]));
     }
