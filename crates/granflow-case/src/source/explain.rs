@@ -2,6 +2,7 @@
 
 use super::Source;
 use crate::fault::CaseError;
+use std::ops::Range;
 
 /// What is said where a key is missing: `message`, else that it is missing, and the cure.
 #[derive(Debug, Clone, Copy)]
@@ -32,19 +33,11 @@ impl Source {
         let quoted: Vec<&str> = message.split('`').skip(1).step_by(2).collect();
         let plain = |text: String| self.at(span.clone(), key, text);
         match quoted.as_slice() {
-            // The table of a choice says it in words of its own.
-            _ if let Some((found, known)) = unexpected(message) => {
-                let table = key.rsplit_once('.').map_or("the case", |(table, _)| table);
-                plain(format!("unknown key `{found}` in {table}")).allowed(found, known.split(", "))
-            }
             [found, known @ ..] if message.starts_with("unknown field") => {
-                let table = key.rsplit_once('.').map_or("the case", |(table, _)| table);
-                let error = plain(format!("unknown key `{found}` in {table}"));
-                if table.starts_with("ensemble.vary.") {
-                    let cure = "a key of the case stands in quotes, as in vary.\"material.friction.coulomb.mu\" = { uniform = [0.2, 0.4] }";
-                    return error.help(cure).allowed(found, known.iter().copied());
-                }
-                error.allowed(found, known.iter().copied())
+                self.unknown_key(span.clone(), key, found, known.iter().copied())
+            }
+            _ if let Some((found, known)) = unexpected(message) => {
+                self.unknown_key(span.clone(), key, found, known.split(", "))
             }
             [found, known @ ..] if message.starts_with("unknown variant") => {
                 plain(format!("found `{found}`, which is not one of the choices"))
@@ -71,9 +64,26 @@ impl Source {
             _ => plain(friendly(message)),
         }
     }
+
+    /// That the table of `key` does not know it, by the name `found` there, and what it does know.
+    fn unknown_key<'a>(
+        &self,
+        span: Option<Range<usize>>,
+        key: &str,
+        found: &str,
+        known: impl IntoIterator<Item = &'a str>,
+    ) -> CaseError {
+        let table = key.rsplit_once('.').map_or("the case", |(table, _)| table);
+        let error = self.at(span, key, format!("unknown key `{found}` in {table}"));
+        if table.starts_with("ensemble.vary.") {
+            let cure = "a key of the case stands in quotes, as in vary.\"material.friction.coulomb.mu\" = { uniform = [0.2, 0.4] }";
+            return error.help(cure).allowed(found, known);
+        }
+        error.allowed(found, known)
+    }
 }
 
-/// The first key that a table of a choice does not know, and those it does.
+/// What the table of a choice says in words of its own: the first key that it does not know, and those it does.
 fn unexpected(message: &str) -> Option<(&str, &str)> {
     let (found, known) =
         message.strip_prefix("unexpected keys in table: ")?.split_once(", available keys: ")?;

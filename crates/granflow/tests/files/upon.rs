@@ -63,14 +63,8 @@ fn a_deposit_is_a_release_of_a_next_run() {
 #[test]
 fn a_result_that_is_no_mountain_is_no_release() {
     let folder = tempfile::tempdir().unwrap();
-    let chute = r#"
-        grid.x = { from = -6.0, to = 6.0, cells = 60 }
-        material.friction.coulomb = { angle = "18 deg" }
-        initial.thickness.cap = { height = 1.0, radius = 2.0 }
-        time.steps = 3
-        output.files = ["netcdf"]
-        "#;
-    begin(&super::case(chute, folder.path()), &folder.path().join("out"), false, &mut |_| false).unwrap();
+    let slope = chute(folder.path(), None);
+    begin(&with(&slope, &[]), &folder.path().join("out"), false, &mut |_| false).unwrap();
     let case = file(folder.path());
     let refused = |release: &str| match with(&case, &[release]).check() {
         Ok(checked) => checked.start().err().unwrap().to_string(),

@@ -78,7 +78,7 @@ impl Compression {
     }
 
     /// All wet cells side by side along `axis` among which something moves, after a step `dt`.
-    fn runs<const D: usize, S>(&self, simulation: &Simulation<D, S>, axis: usize, dt: f64) -> Vec<Side<D>>
+    fn lines<const D: usize, S>(&self, simulation: &Simulation<D, S>, axis: usize, dt: f64) -> Vec<Line<D>>
     where
         S: Scheme<D, f64, State = Flow<D, f64>>,
         S::Ground: Bed<D, f64>,
@@ -109,20 +109,14 @@ impl Compression {
                 run.push(middle);
                 run.extend((at + 1..grid.cells[axis]).map_while(wet));
                 seen = run.last().map_or(seen, |last| last.index[axis] + 1);
-                runs.push(self.side_by_side(grid, run, axis, dt / grid.size[axis]));
+                runs.push(self.line(grid, run, axis, dt / grid.size[axis]));
             }
         }
         runs
     }
 
     /// Cells side by side along `axis` with the most that compression adds between them in a step with dt/dx = `lambda`.
-    fn side_by_side<const D: usize>(
-        &self,
-        grid: &Grid<D>,
-        cells: Vec<Wet<D>>,
-        axis: usize,
-        lambda: f64,
-    ) -> Side<D> {
+    fn line<const D: usize>(&self, grid: &Grid<D>, cells: Vec<Wet<D>>, axis: usize, lambda: f64) -> Line<D> {
         let most =
             |a: &Wet<D>, b: &Wet<D>| excess(self.excess, [a.head, b.head], [a.state.h, b.state.h], lambda);
         let at = [&cells[0], &cells[cells.len() - 1]];
@@ -130,7 +124,7 @@ impl Compression {
         let wall = |side: usize| ends[side] && grid.boundary[axis][side] == Boundary::Wall;
         let walls = [0, 1].map(|side| wall(side).then(|| most(at[side], at[side])));
         let next = cells.windows(2).map(|pair| most(&pair[0], &pair[1])).chain([0.0]).collect();
-        Side { axis, most: next, walls, cells }
+        Line { axis, most: next, walls, cells }
     }
 
     /// Stop what moves, if stresses and the friction of cells at rest can hold all of it.
@@ -163,10 +157,10 @@ impl Compression {
             Standing { momentum: 0.0, spare, most }
         };
         let held = (0..D).all(|axis| {
-            self.runs(simulation, axis, dt).iter().all(|run| {
-                let line: Vec<Standing> =
-                    run.cells.iter().zip(&run.most).map(|(cell, most)| standing(axis, cell, *most)).collect();
-                holds(&line, run.walls)
+            self.lines(simulation, axis, dt).iter().all(|line| {
+                let cells = line.cells.iter().zip(&line.most);
+                let standing: Vec<Standing> = cells.map(|(cell, most)| standing(axis, cell, *most)).collect();
+                holds(&standing, line.walls)
             })
         });
         let still = |index, h| (index, Flow { h, q: [0.0; D] });
@@ -180,7 +174,7 @@ impl Compression {
 }
 
 /// Wet cells side by side along an axis.
-struct Side<const D: usize> {
+struct Line<const D: usize> {
     axis: usize,
     cells: Vec<Wet<D>>,
     /// The most that compression adds at the face of each to the next.
@@ -189,7 +183,7 @@ struct Side<const D: usize> {
     walls: [Option<f64>; 2],
 }
 
-impl<const D: usize> Side<D> {
+impl<const D: usize> Line<D> {
     /// Has what moves more energy than friction takes in a step? The last of it comes to rest as under k_act, for stresses would take
     /// from step to step a share of what is left.
     fn is_fast(&self) -> bool {
@@ -232,9 +226,10 @@ where
         }
         let mut fast = false;
         for axis in 0..D {
-            let runs = self.runs(simulation, axis, dt);
-            let states: Vec<_> = runs.iter().filter(|run| run.is_fast()).flat_map(Side::pressed).collect();
-            fast |= runs.iter().any(Side::is_fast);
+            let mut lines = self.lines(simulation, axis, dt);
+            lines.retain(Line::is_fast);
+            fast |= !lines.is_empty();
+            let states: Vec<_> = lines.iter().flat_map(Line::pressed).collect();
             if !states.is_empty() {
                 simulation.change(states);
             }
