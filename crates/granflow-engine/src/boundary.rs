@@ -11,33 +11,53 @@ pub fn fill<const D: usize, P: Components<f64>>(
     layout: &Layout,
     mirror: impl Fn(usize, P) -> P,
 ) {
-    for axis in 0..D {
-        let last = grid.cells[axis] as isize - 1;
+    if P::COUNT > 0 {
+        each_line(&grid.cells, &grid.boundary, layout, &mut |line| {
+            for k in 0..line.count {
+                let value: P = field.get(line.source + k * line.step);
+                let value = line.wall.map_or(value, |axis| mirror(axis, value));
+                field.set(line.target + k * line.step, value);
+            }
+        });
+    }
+}
+
+/// Ghost cells side by side along an end of the grid, and the cells whose values they take.
+struct Line {
+    source: usize,
+    target: usize,
+    /// Distance in memory from one to the next.
+    step: usize,
+    count: usize,
+    /// The axis along which they are mirror images.
+    wall: Option<usize>,
+}
+
+/// Every line of ghosts that is filled.
+fn each_line(cells: &[usize], boundary: &[[Boundary; 2]], layout: &Layout, see: &mut dyn FnMut(Line)) {
+    for (axis, (&count, ends)) in cells.iter().zip(boundary).enumerate() {
+        let last = count as isize - 1;
         // The second axis takes the ghosts of the first along: a corner has neighbours too.
         let ghosts = GHOSTS as isize;
-        let across =
-            if axis == 0 { 0..layout.rows as isize } else { -ghosts..layout.columns as isize + ghosts };
-        let place = |i: isize, j: isize| if axis == 0 { layout.place(i, j) } else { layout.place(j, i) };
+        let (first, count) = if axis == 0 { (0, layout.rows) } else { (-ghosts, layout.stride) };
+        let place = |k: isize| if axis == 0 { layout.place(k, first) } else { layout.place(first, k) };
         for ghost in 0..ghosts {
             for (side, target) in [(0, -1 - ghost), (1, last + 1 + ghost)] {
-                if grid.boundary[axis][side] == Boundary::Absorbing {
-                    continue; // 0, as the field was made
-                }
                 let edge = if side == 0 { 0 } else { last };
                 let inward = if side == 0 { edge + ghost } else { edge - ghost };
-                let source = match grid.boundary[axis][side] {
-                    Boundary::Open | Boundary::Absorbing => edge,
+                let source = match ends[side] {
+                    Boundary::Absorbing => continue, // 0, as the field was made
+                    Boundary::Open => edge,
                     Boundary::Wall => inward,
                     Boundary::Periodic => last - inward, // -1 - k is last - k, last + 1 + k is k
                 };
-                for j in across.clone() {
-                    let value: P = field.get(place(source, j));
-                    let value = match grid.boundary[axis][side] {
-                        Boundary::Wall => mirror(axis, value),
-                        Boundary::Open | Boundary::Periodic | Boundary::Absorbing => value,
-                    };
-                    field.set(place(target, j), value);
-                }
+                see(Line {
+                    source: place(source),
+                    target: place(target),
+                    step: layout.step(1 - axis),
+                    count,
+                    wall: (ends[side] == Boundary::Wall).then_some(axis),
+                });
             }
         }
     }

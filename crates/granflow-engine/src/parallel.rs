@@ -1,4 +1,10 @@
 //! Work on several threads, by rayon; without the feature `threads` the same work on one. No result depends on it.
+//!
+//! All work goes through one function that is generic in nothing ([`pool::each`]): else every loop of every scheme would have rayon's
+//! splitting and stealing compiled for itself, in each crate that steps it.
+
+use crate::disjoint::DisjointSlice;
+use std::sync::atomic::{AtomicBool, Ordering::Relaxed};
 
 #[cfg(feature = "threads")]
 mod pool {
@@ -8,29 +14,9 @@ mod pool {
     pub(crate) fn threads() -> usize {
         rayon::current_num_threads()
     }
-    /// Each number below `count`.
-    pub(crate) fn for_each(count: usize, work: impl Fn(usize) + Send + Sync) {
-        (0..count).into_par_iter().for_each(work);
-    }
-    /// The items in chunks of `size`, each of which one thread takes when it is free.
-    pub(crate) fn for_each_chunk<T: Sync>(items: &[T], size: usize, work: impl Fn(&[T]) + Send + Sync) {
-        items.par_chunks(size).with_max_len(1).for_each(work);
-    }
-    /// The items in chunks of `size`, each with the number of its first one.
-    pub(crate) fn for_each_chunk_mut<T: Send>(
-        items: &mut [T],
-        size: usize,
-        work: impl Fn(usize, &mut [T]) + Send + Sync,
-    ) {
-        items.par_chunks_mut(size).enumerate().for_each(|(k, chunk)| work(k * size, chunk));
-    }
-    /// The values of the numbers below `count`, in their order.
-    pub(crate) fn map<T: Send>(count: usize, value: impl Fn(usize) -> T + Send + Sync) -> Vec<T> {
-        (0..count).into_par_iter().map(value).collect()
-    }
-    /// Is there such a number below `count`?
-    pub(crate) fn any(count: usize, is: impl Fn(usize) -> bool + Send + Sync) -> bool {
-        (0..count).into_par_iter().any(is)
+    /// Each number below `count`; a thread that is free takes one of them, or `together` in a row.
+    pub(super) fn each(count: usize, together: usize, work: &(dyn Fn(usize) + Sync)) {
+        (0..count).into_par_iter().with_max_len(together).for_each(work);
     }
 }
 
@@ -41,29 +27,53 @@ mod pool {
         1
     }
     /// Each number below `count`.
-    pub(crate) fn for_each(count: usize, work: impl Fn(usize) + Send + Sync) {
+    pub(super) fn each(count: usize, _together: usize, work: &(dyn Fn(usize) + Sync)) {
         (0..count).for_each(work);
-    }
-    /// The items in chunks of `size`.
-    pub(crate) fn for_each_chunk<T: Sync>(items: &[T], size: usize, work: impl Fn(&[T]) + Send + Sync) {
-        items.chunks(size).for_each(work);
-    }
-    /// The items in chunks of `size`, each with the number of its first one.
-    pub(crate) fn for_each_chunk_mut<T: Send>(
-        items: &mut [T],
-        size: usize,
-        work: impl Fn(usize, &mut [T]) + Send + Sync,
-    ) {
-        items.chunks_mut(size).enumerate().for_each(|(k, chunk)| work(k * size, chunk));
-    }
-    /// The values of the numbers below `count`, in their order.
-    pub(crate) fn map<T: Send>(count: usize, value: impl Fn(usize) -> T + Send + Sync) -> Vec<T> {
-        (0..count).map(value).collect()
-    }
-    /// Is there such a number below `count`?
-    pub(crate) fn any(count: usize, is: impl Fn(usize) -> bool + Send + Sync) -> bool {
-        (0..count).any(is)
     }
 }
 
-pub(crate) use pool::{any, for_each, for_each_chunk, for_each_chunk_mut, map, threads};
+pub(crate) use pool::threads;
+
+/// Each number below `count`.
+pub(crate) fn for_each(count: usize, work: impl Fn(usize) + Sync) {
+    pool::each(count, usize::MAX, &work);
+}
+
+/// The items in chunks of `size`, each of which one thread takes when it is free.
+pub(crate) fn for_each_chunk<T: Sync>(items: &[T], size: usize, work: impl Fn(&[T]) + Sync) {
+    let start = |chunk: usize| (chunk * size).min(items.len());
+    pool::each(items.len().div_ceil(size), 1, &|chunk| work(&items[start(chunk)..start(chunk + 1)]));
+}
+
+/// The items in chunks of `size`, each with the number of its first one.
+pub(crate) fn for_each_chunk_mut<T: Send>(
+    items: &mut [T],
+    size: usize,
+    work: impl Fn(usize, &mut [T]) + Sync,
+) {
+    let len = items.len();
+    let start = |chunk: usize| (chunk * size).min(len);
+    let items = DisjointSlice::new(items);
+    pool::each(len.div_ceil(size), usize::MAX, &|chunk| {
+        // SAFETY: a chunk belongs to one thread.
+        work(start(chunk), unsafe { items.slice(start(chunk)..start(chunk + 1)) });
+    });
+}
+
+/// The values of the numbers below `count`, in their order.
+pub(crate) fn map<T: Default + Send>(count: usize, value: impl Fn(usize) -> T + Sync) -> Vec<T> {
+    let mut values: Vec<T> = (0..count).map(|_| T::default()).collect();
+    for_each_chunk_mut(&mut values, 1, |number, place| place[0] = value(number));
+    values
+}
+
+/// Is there such a number below `count`?
+pub(crate) fn any(count: usize, is: impl Fn(usize) -> bool + Sync) -> bool {
+    let found = AtomicBool::new(false);
+    for_each(count, |number| {
+        if !found.load(Relaxed) && is(number) {
+            found.store(true, Relaxed);
+        }
+    });
+    found.into_inner()
+}

@@ -93,22 +93,18 @@ impl<const D: usize, L: SimdVector, S: Scheme<D, f64>, I: SimdContext> SchemeVis
         let chunk = blocks.len().div_ceil(32 * parallel::threads()).max(1);
         parallel::for_each_chunk(blocks, chunk, |blocks| {
             Workspace::with::<D, L, T>(|memory| {
-                context.call(
-                    #[inline(always)]
-                    || {
-                        let (mut scratch, mut reducer) = memory.cut::<D, L, T>();
-                        for TileBlock { awake: range, across } in blocks {
-                            let tiles = awake[range.clone()].iter().map(|number| &tiles[*number as usize]);
-                            // SAFETY: every tile belongs to one block.
-                            let found = unsafe {
-                                let changes = changes.slice(range.start * tracked..range.end * tracked);
-                                (stats.slice(range.clone()), changes)
-                            };
-                            let memory = (&mut scratch, &mut reducer);
-                            strip::run::<D, L, T, S>(sweep, scheme, tiles, *across, &targets, found, memory);
-                        }
-                    },
-                );
+                let (mut scratch, mut reducer) = memory.cut::<D, L, T>();
+                for TileBlock { awake: range, across } in blocks {
+                    let tiles = awake[range.clone()].iter().map(|number| &tiles[*number as usize]);
+                    // SAFETY: every tile belongs to one block.
+                    let found = unsafe {
+                        let changes = changes.slice(range.start * tracked..range.end * tracked);
+                        (stats.slice(range.clone()), changes)
+                    };
+                    let block = (sweep, &targets, context);
+                    let memory = (&mut scratch, &mut reducer);
+                    strip::run::<D, L, T, S, I>(block, scheme, tiles, *across, found, memory);
+                }
             });
         });
     }

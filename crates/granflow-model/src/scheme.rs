@@ -1,6 +1,6 @@
 //! A scheme is a few pointwise functions; arrays, axes, threads and files live elsewhere.
 
-use crate::real::{Real, for_axis, per_axis};
+use crate::real::{Real, all, for_axis, per_axis};
 use crate::time::Stages;
 
 /// A value of a cell that is stored as a few numbers, one array each (struct of arrays).
@@ -21,6 +21,20 @@ pub trait Components<R: Real>: Copy + Send + Sync + 'static {
 
 /// The most numbers that the state, the ground or the forcing of a scheme may have. (Face states and fluxes may have any number.)
 pub const MAX_COMPONENTS: usize = 16;
+
+/// The numbers of a value, and zeros behind them.
+#[inline(always)]
+pub fn numbers<R: Real, P: Components<R>>(value: P) -> [R; MAX_COMPONENTS] {
+    let zero = R::zero();
+    // One by one: `[zero; 16]` would be a loop for the compiler ([`crate::real::all`]).
+    let mut numbers =
+        [zero, zero, zero, zero, zero, zero, zero, zero, zero, zero, zero, zero, zero, zero, zero, zero];
+    value.store(
+        #[inline(always)]
+        |k, number| numbers[k] = number,
+    );
+    numbers
+}
 
 impl<R: Real> Components<R> for () {
     const COUNT: usize = 0;
@@ -160,7 +174,7 @@ pub trait Stencil<const D: usize, R: Real, S: Copy, G: Copy, F: Copy = ()> {
     #[inline(always)]
     fn star(&self) -> Neighbours<D, R, S, G, F> {
         let here = self.at([0; D]);
-        let (mut lo, mut hi) = ([here; D], [here; D]);
+        let (mut lo, mut hi) = (all(here), all(here));
         for_axis!(axis in D => {
             let mut step = [0; D];
             step[axis] = 1;
@@ -310,18 +324,10 @@ pub trait Scheme<const D: usize, R: Real>: Copy + Send + Sync {
     #[inline(always)]
     fn rk_combine(&self, keep: R, old: &Self::State, new: &Self::State) -> Self::State {
         let give = R::splat(1.0) - keep;
-        let mut sums = [R::zero(); MAX_COMPONENTS];
-        old.store(
-            #[inline(always)]
-            |k, old| sums[k] = keep * old,
-        );
-        new.store(
-            #[inline(always)]
-            |k, new| sums[k] = sums[k] + give * new,
-        );
+        let (old, new) = (numbers(*old), numbers(*new));
         Components::load(
             #[inline(always)]
-            |k| sums[k],
+            |k| keep * old[k] + give * new[k],
         )
     }
     /// The cell rests by a proof of the scheme (or is dry): with neighbours at rest nothing will change here.

@@ -4,7 +4,7 @@ use super::state::Simulation;
 use crate::boundary;
 use crate::tiles::{Activity, TileStats};
 use granflow_model::real::CompensatedSum;
-use granflow_model::scheme::{Components, MAX_COMPONENTS, Scheme};
+use granflow_model::scheme::{Components, MAX_COMPONENTS, Scheme, numbers};
 
 impl<const D: usize, S: Scheme<D, f64>> Simulation<D, S> {
     /// Give cells other states between two steps; what that adds of volume is booked as poured in. Only tiles in which a bit of a
@@ -88,7 +88,5 @@ impl<const D: usize, S: Scheme<D, f64>> Simulation<D, S> {
 
 /// The bits of a value.
 pub(super) fn bits<P: Components<f64>>(value: P) -> [u64; MAX_COMPONENTS] {
-    let mut bits = [0; MAX_COMPONENTS];
-    value.store(|k, part| bits[k] = part.to_bits());
-    bits
+    numbers(value).map(f64::to_bits)
 }

@@ -78,11 +78,11 @@ pub struct Simulation<const D: usize, S: Scheme<D, f64>> {
     pub(super) last: LastStep,
 }
 
-/// The field whose cells have these values, given by index per axis.
-fn laid_out<const D: usize, P: Components<f64>>(
-    layout: &Layout,
-    value: impl Fn([usize; D]) -> P + Sync,
-) -> Field {
+/// A value of every cell, given by index per axis.
+type OfCell<'a, const D: usize, P> = &'a (dyn Fn([usize; D]) -> P + Sync);
+
+/// The field whose cells have these values.
+fn laid_out<const D: usize, P: Components<f64>>(layout: &Layout, value: OfCell<D, P>) -> Field {
     const { assert!(D == 1 || D == 2, "a grid has one dimension or two") };
     let mut field = Field::zeros::<P>(layout);
     field.fill(layout, |column, row| value(per_axis!(k => if k == 0 { column } else { row })));
@@ -127,12 +127,24 @@ impl<const D: usize, S: Scheme<D, f64>> Simulation<D, S> {
         ground: impl Fn([usize; D]) -> S::Ground + Sync,
         initial: impl Fn([usize; D]) -> S::State + Sync,
     ) -> Result<Self, BuildError> {
+        Self::built(loops, scheme, grid, step_size, &ground, &initial)
+    }
+
+    /// Once for a scheme, whatever gives the ground and the state.
+    fn built(
+        loops: Loops<D, S>,
+        scheme: S,
+        grid: Grid<D>,
+        step_size: StepSize,
+        ground: OfCell<D, S::Ground>,
+        initial: OfCell<D, S::State>,
+    ) -> Result<Self, BuildError> {
         check(&grid, step_size, scheme.max_courant(), scheme.stages().len())?;
         let layout = Layout::of(&grid);
         let mut grounds = laid_out::<D, S::Ground>(&layout, ground);
         boundary::fill(&mut grounds, &grid, &layout, |axis, g| scheme.mirror_ground(axis, &g));
         let now = laid_out::<D, S::State>(&layout, initial);
-        let mut forcings = laid_out::<D, S::Forcing>(&layout, |_| scheme.usual_forcing());
+        let mut forcings = laid_out::<D, S::Forcing>(&layout, &|_| scheme.usual_forcing());
         boundary::fill(&mut forcings, &grid, &layout, |axis, f| scheme.mirror_forcing(axis, &f));
         let (tiles, across) = cut(&layout);
         let tracked = tracked::<D, S>();

@@ -87,6 +87,11 @@ impl<L: SimdVector, P: Components<L>> Row<'_, L, P> {
     unsafe fn at(start: *mut f64) -> Self {
         Row { start, owner: PhantomData, values: PhantomData }
     }
+    /// The same row, by value.
+    #[inline(always)]
+    fn reborrow(&mut self) -> Row<'_, L, P> {
+        Row { start: self.start, owner: PhantomData, values: PhantomData }
+    }
     /// The values of the cells from `at` on.
     ///
     /// # Safety
@@ -155,6 +160,21 @@ pub(super) struct Scratch<'a, const D: usize, L: SimdVector, T: Scheme<D, L>> {
 }
 
 impl<'a, const D: usize, L: SimdVector, T: Scheme<D, L>> Scratch<'a, D, L, T> {
+    /// The same rows, by value: a place behind a reference would be read again after every number that is written.
+    #[inline(always)]
+    pub(super) fn reborrow(&mut self) -> Scratch<'_, D, L, T> {
+        let Scratch { forecasts: [a, b, c], face_states: [d, e], corners: [f, g], .. } = self;
+        Scratch {
+            forecasts: [a.reborrow(), b.reborrow(), c.reborrow()],
+            face_states: [d.reborrow(), e.reborrow()],
+            across: self.across.reborrow(),
+            below: self.below.reborrow(),
+            corners: [f.reborrow(), g.reborrow()],
+            updated: self.updated.reborrow(),
+            in_strip: self.in_strip,
+        }
+    }
+
     /// How many numbers its rows have.
     const NUMBERS: usize = 3 * Row::<L, T::Forecast>::NUMBERS
         + 2 * Row::<L, T::FaceStates>::NUMBERS

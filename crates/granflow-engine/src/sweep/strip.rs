@@ -33,11 +33,11 @@ use super::scratch::Scratch;
 use crate::disjoint::DisjointSlice;
 use crate::field::has;
 use crate::grid::Layout;
-use crate::lanes::{SimdVector, prefetch};
+use crate::lanes::{SimdContext, SimdVector, prefetch};
 use crate::observe::Marks;
 use crate::tiles::{OutletFace, Tile, TileStats};
 use granflow_model::real::{for_axis, per_axis};
-use granflow_model::scheme::{Cell, Components, MAX_COMPONENTS, REACH, Scheme, Spacing, Stencil};
+use granflow_model::scheme::{Cell, Components, MAX_COMPONENTS, REACH, Scheme, Spacing, Stencil, numbers};
 
 /// Where the inner loops write.
 pub(super) struct Targets<'a> {
@@ -49,6 +49,7 @@ pub(super) struct Targets<'a> {
 
 /// Tiles under way, on ground and under a forcing that are everywhere the same (`UNIFORM`) or not. All by value: a number
 /// behind a reference would have to be read again after every number that the inner loop writes.
+#[derive(Clone, Copy)]
 struct Strip<'a, const D: usize, const UNIFORM: bool, L: SimdVector, T: Scheme<D, L>> {
     layout: Layout,
     scheme: T,
@@ -100,13 +101,19 @@ pub(super) const fn same<L: SimdVector, S: Components<f64>, T: Components<L>>() 
 }
 
 /// Compute a rectangle of tiles, `across` side by side, row by row; leave what was found in each, and its changes.
-#[inline(always)]
-pub(super) fn run<'a, 't, const D: usize, L: SimdVector, T: Scheme<D, L>, S: Scheme<D, f64>>(
-    sweep: &Sweep<'a>,
+pub(super) fn run<
+    'a,
+    't,
+    const D: usize,
+    L: SimdVector,
+    T: Scheme<D, L>,
+    S: Scheme<D, f64>,
+    I: SimdContext,
+>(
+    (sweep, targets, context): (&Sweep<'a>, &'a Targets<'a>, I),
     scheme: &T,
     tiles: impl Iterator<Item = &'t Tile> + Clone,
     across: usize,
-    targets: &'a Targets<'a>,
     found: (&mut [TileStats], &mut [f64]),
     memory: (&mut Scratch<D, L, T>, &mut TileReducer),
 ) {
@@ -120,15 +127,14 @@ pub(super) fn run<'a, 't, const D: usize, L: SimdVector, T: Scheme<D, L>, S: Sch
     } && tiles.clone().all(|tile| tile.uniform)
     {
         let strip = Strip::<D, true, L, T>::new::<S>(sweep, scheme, tiles.clone(), targets);
-        strip.sweep(tiles, across, found, memory);
+        strip.sweep(context, tiles, across, found, memory);
     } else {
         let strip = Strip::<D, false, L, T>::new::<S>(sweep, scheme, tiles.clone(), targets);
-        strip.sweep(tiles, across, found, memory);
+        strip.sweep(context, tiles, across, found, memory);
     }
 }
 
 impl<'a, const D: usize, const UNIFORM: bool, L: SimdVector, T: Scheme<D, L>> Strip<'a, D, UNIFORM, L, T> {
-    #[inline(always)]
     fn new<'t, S: Scheme<D, f64>>(
         sweep: &Sweep<'a>,
         scheme: &T,
@@ -227,11 +233,7 @@ impl<'a, const D: usize, const UNIFORM: bool, L: SimdVector, T: Scheme<D, L>> St
 /// The same value in all lanes.
 #[inline(always)]
 fn everywhere<L: SimdVector, S: Components<f64>, T: Components<L>>(value: S) -> T {
-    let mut components = [0.0; MAX_COMPONENTS];
-    value.store(
-        #[inline(always)]
-        |k, component| components[k] = component,
-    );
+    let components = numbers(value);
     T::load(
         #[inline(always)]
         |k| L::splat(components[k]),

@@ -8,7 +8,7 @@ use super::flux::{Density, Half};
 use super::friction::{Coulomb, Friction};
 use super::ground::{Bed, Chute, Towards};
 use super::{Flow, normal};
-use crate::real::{Real, dot, for_axis, per_axis};
+use crate::real::{Real, all, dot, for_axis, per_axis};
 use crate::scheme::{
     Cell, Diagnostics, Faces, Forecasts, Neighbours, Scheme, SchemeVisitor, Side, Spacing, Stencil,
     components,
@@ -119,7 +119,7 @@ impl Kinetic {
         FaceStates {
             h: state.h,
             u: per_axis!(k => primitives[k].u),
-            halves: per_axis!(k => if own { primitives[k].halves(state.h) } else { [Half::none(); 2] }),
+            halves: per_axis!(k => if own { primitives[k].halves(state.h) } else { [Half::none(), Half::none()] }),
             beta: ground.beta,
         }
     }
@@ -137,7 +137,7 @@ impl Kinetic {
             FaceDepth::Mean => {
                 let mean = (left.h + right.h) * R::splat(0.5);
                 let momenta = [mean * left.u[axis], mean * right.u[axis]];
-                Self::halves_at([mean; 2], momenta, [left.beta, right.beta])
+                Self::halves_at([mean, mean], momenta, [left.beta, right.beta])
             }
         };
         Self::sum(axis, halves, [left.u, right.u])
@@ -212,7 +212,7 @@ impl Kinetic {
     ) -> [R; D] {
         let h = near.here.state.h;
         match self.variant.static_depth {
-            StaticDepth::New => [resting_h; D],
+            StaticDepth::New => all(resting_h),
             StaticDepth::Smoothed => per_axis!(k => {
                 ((near.lo[k].state.h + near.hi[k].state.h) + (h + h)) * R::splat(0.25)
             }),

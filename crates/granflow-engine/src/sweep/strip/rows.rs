@@ -2,7 +2,7 @@
 
 use super::update::Vector;
 use super::{Around, Strip};
-use crate::lanes::SimdVector;
+use crate::lanes::{SimdContext, SimdVector};
 use crate::sweep::reducer::TileReducer;
 use crate::sweep::scratch::{Row as ScratchRow, Scratch};
 use crate::tiles::{Tile, TileStats};
@@ -31,9 +31,12 @@ impl Row {
 
 impl<const D: usize, const UNIFORM: bool, L: SimdVector, T: Scheme<D, L>> Strip<'_, D, UNIFORM, L, T> {
     /// Compute the tiles from the lowest row to the highest.
-    #[inline(always)]
+    ///
+    /// What runs on lanes is called in pieces of a row, each a function of its own: one for all rows would take the compiler three
+    /// times as long.
     pub(super) fn sweep<'t>(
         &self,
+        context: impl SimdContext,
         tiles: impl Iterator<Item = &'t Tile> + Clone,
         across: usize,
         (found, changes): (&mut [TileStats], &mut [f64]),
@@ -54,20 +57,35 @@ impl<const D: usize, const UNIFORM: bool, L: SimdVector, T: Scheme<D, L>> Strip<
         let ahead = if D > 1 { 1 } else { 0 };
         for number in first - ahead..end + ahead {
             let (row, j) = (Row { columns, number, first }, number - ahead);
-            self.find_face_states(row, scratch);
+            context.call(
+                #[inline(always)]
+                || self.find_face_states(row, scratch.reborrow()),
+            );
             if number < first {
                 continue;
             }
-            self.find_fluxes_along_x(row, scratch);
+            context.call(
+                #[inline(always)]
+                || self.find_fluxes_along_x(row, scratch.reborrow()),
+            );
             if outlet {
                 for (tile, k) in tile_row.clone().take(across).zip(from..) {
-                    self.add_outflow(&mut found[k].outflow, tile, columns, j, scratch, false);
+                    context.call(
+                        #[inline(always)]
+                        || self.add_outflow(&mut found[k].outflow, tile, columns, j, scratch, false),
+                    );
                 }
             }
-            self.update_row(row, scratch, reducer);
+            context.call(
+                #[inline(always)]
+                || self.update_row(row, scratch.reborrow(), reducer),
+            );
             if outlet {
                 for (tile, k) in tile_row.clone().take(across).zip(from..) {
-                    self.add_outflow(&mut found[k].outflow, tile, columns, j, scratch, true);
+                    context.call(
+                        #[inline(always)]
+                        || self.add_outflow(&mut found[k].outflow, tile, columns, j, scratch, true),
+                    );
                 }
             }
             let Some(&Tile { rows: [bottom, top], .. }) = tile_row.clone().next() else { continue };
@@ -86,7 +104,6 @@ impl<const D: usize, const UNIFORM: bool, L: SimdVector, T: Scheme<D, L>> Strip<
     }
 
     /// Note which cells of each vector belong to the strip.
-    #[inline(always)]
     fn mark_strip(&self, columns: [usize; 2], scratch: &mut Scratch<D, L, T>) {
         let none = UNIFORM && L::any(self.scheme.is_nodata(&self.ground(0)));
         for m in Self::vectors(columns) {
@@ -97,11 +114,11 @@ impl<const D: usize, const UNIFORM: bool, L: SimdVector, T: Scheme<D, L>> Strip<
 
     /// Find the face states of row `number`.
     #[inline(always)]
-    fn find_face_states(&self, row: Row, scratch: &mut Scratch<D, L, T>) {
+    fn find_face_states(self, row: Row, mut scratch: Scratch<D, L, T>) {
         if T::Forecast::COUNT > 0 {
             self.find_forecasts(row, &mut scratch.forecasts);
         }
-        let Scratch { forecasts, face_states, .. } = scratch;
+        let Scratch { forecasts, face_states, .. } = &mut scratch;
         let above = &mut face_states[row.parity()];
         let place = self.start(row.columns, row.number);
         // One vector ahead: its roots and divisions are under way while this one's sums are formed.
@@ -109,7 +126,7 @@ impl<const D: usize, const UNIFORM: bool, L: SimdVector, T: Scheme<D, L>> Strip<
         for m in Self::vectors(row.columns) {
             self.prefetch_rows(place + m);
             let next = self.scheme.primitives(&self.cell(place + m + L::WIDTH));
-            let stencil = Around { strip: self, place: place + m };
+            let stencil = Around { strip: &self, place: place + m };
             // SAFETY: a vector of the row.
             unsafe {
                 let forecasts = Self::forecasts(forecasts, row, m as isize);
@@ -167,8 +184,8 @@ impl<const D: usize, const UNIFORM: bool, L: SimdVector, T: Scheme<D, L>> Strip<
     /// Find the fluxes along x of the row below `number` (in one dimension of the row itself), and the values at its upper
     /// corners.
     #[inline(always)]
-    fn find_fluxes_along_x(&self, row: Row, scratch: &mut Scratch<D, L, T>) {
-        let Scratch { face_states, across, corners, .. } = scratch;
+    fn find_fluxes_along_x(self, row: Row, mut scratch: Scratch<D, L, T>) {
+        let Scratch { face_states, across, corners, .. } = &mut scratch;
         let end = Self::end(row.columns);
         if row.number <= row.first {
             across.fill_halo(end);
@@ -196,8 +213,8 @@ impl<const D: usize, const UNIFORM: bool, L: SimdVector, T: Scheme<D, L>> Strip<
 
     /// Find the fluxes along y between row `number` and the one below, and update that (in one dimension the row itself).
     #[inline(always)]
-    fn update_row(&self, row: Row, scratch: &mut Scratch<D, L, T>, reducer: &mut TileReducer) {
-        let Scratch { face_states, across, below, corners, updated, in_strip, .. } = scratch;
+    fn update_row(self, row: Row, mut scratch: Scratch<D, L, T>, reducer: &mut TileReducer) {
+        let Scratch { face_states, across, below, corners, updated, in_strip, .. } = &mut scratch;
         let (Row { columns, number, first }, parity) = (row, row.parity());
         let above = &face_states[parity];
         let here = if D > 1 { &face_states[1 - parity] } else { above };

@@ -5,7 +5,7 @@ use crate::lanes::SimdVector;
 use crate::observe::Marks;
 use crate::sweep::reducer::TileReducer;
 use crate::sweep::scratch::Row;
-use granflow_model::scheme::{Cell, Components, Diagnostics, Faces, MAX_COMPONENTS, Scheme};
+use granflow_model::scheme::{Cell, Components, Diagnostics, Faces, Scheme, numbers};
 
 /// The cells of a strip that are updated side by side.
 pub(super) struct Vector<L: SimdVector> {
@@ -30,7 +30,6 @@ impl<const D: usize, const UNIFORM: bool, L: SimdVector, T: Scheme<D, L>> Strip<
         faces: &[Faces<T::Flux>; D],
         corners: &[[T::Corner; 2]; 2],
     ) -> T::State {
-        let zero = L::zero();
         let here = self.cell(place);
         let mut new = self.scheme.update(&Around { strip: self, place }, states, faces, corners, self.dt);
         let mut old = here.state;
@@ -45,15 +44,7 @@ impl<const D: usize, const UNIFORM: bool, L: SimdVector, T: Scheme<D, L>> Strip<
             );
             new = self.scheme.rk_combine(L::splat(self.rk_weight), &old, &new);
         }
-        let (mut before, mut input) = ([zero; MAX_COMPONENTS], [zero; MAX_COMPONENTS]);
-        old.store(
-            #[inline(always)]
-            |k, value| before[k] = value,
-        );
-        here.state.store(
-            #[inline(always)]
-            |k, value| input[k] = value,
-        );
+        let (before, input) = (numbers(old), numbers(here.state));
         new.store(
             #[inline(always)]
             |k, value| {

@@ -58,7 +58,7 @@ pub(super) fn corner<const D: usize, R: Real, S: CellSlopes<D, R>>(
 ) -> R {
     let (zero, one) = (R::zero(), R::splat(1.0));
     let [[_, below_right], [above_left, above_right]] = around;
-    let mut steep = [[zero; 2]; 2];
+    let mut steep = [[zero, zero], [zero, zero]];
     for_axis!(axis in D => {
         // The edges that end and that begin at the node, each with the cells along it.
         let (ends, begins) = (if axis == 0 { above_left } else { below_right }, above_right);

@@ -2,7 +2,7 @@
 
 use super::ends::EndsOf;
 use super::forecast::Motion;
-use crate::real::Real;
+use crate::real::{Real, all};
 use crate::savage_hutter::ground::Bed;
 use crate::scheme::{Components, components};
 
@@ -65,7 +65,7 @@ impl<const D: usize, R: Real> Flux<D, R> {
     #[inline(always)]
     pub(super) fn none() -> Self {
         let zero = R::zero();
-        Flux { mass: zero, left: [zero; D], right: [zero; D], energy: [zero; 2] }
+        Flux { mass: zero, left: all(zero), right: all(zero), energy: [zero, zero] }
     }
 }
 

@@ -122,7 +122,7 @@ pub(super) fn flux<const D: usize, R: Real, B: Bed<D, R>, T: EndsOf<D, R>>(
         push = lambda * free * kinetic.push;
     }
     let mass: [R; 2] = per_axis!(side => lambda * sides[side].share * mass[side]);
-    let mut spreads = [zero; 2];
+    let mut spreads = [zero, zero];
     if R::any(free.lt(one)) {
         let per_head = left.per_head.min(right.per_head);
         let within = R::select(outside, zero, one - free);

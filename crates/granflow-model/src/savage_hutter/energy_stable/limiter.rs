@@ -64,7 +64,7 @@ impl<const D: usize, R: Real> Exchange<D, R> {
             mass: self.net(),
             left: per_axis!(k => (sends[0] * carried[0][k] - sends[1] * turned_right[k]) + to_left[k]),
             right: per_axis!(k => (sends[0] * turned_left[k] - sends[1] * carried[1][k]) + to_right[k]),
-            energy: [zero; 2],
+            energy: [zero, zero],
         }
     }
 
