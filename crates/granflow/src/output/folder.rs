@@ -2,6 +2,7 @@
 
 use super::inputs::Input;
 use super::{Error, remove_if_there, remove_leftovers, whole_file};
+use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 use std::fmt;
 use std::fs::{self, File, OpenOptions, TryLockError};
@@ -199,7 +200,7 @@ impl Folder {
         }
         names.sort();
         let files: Result<Vec<Input>, Error> =
-            names.iter().map(|name| Input::left(&self.path.join(name), Path::new(name))).collect();
+            names.par_iter().map(|name| Input::left(&self.path.join(name), Path::new(name))).collect();
         let list = List::of(files?);
         whole_file(&self.path.join(LEFT), |out| serde_json::to_writer(out, &list).map_err(io::Error::from))
     }

@@ -10,7 +10,7 @@ use super::schedule::{Due, Schedule};
 use super::series::Series;
 use super::{Sink, SinkError};
 use crate::output;
-use crate::output::checkpoint::{Origin, Past};
+use crate::output::checkpoint::{Checkpoint, Origin, Past};
 use crate::output::folder::Folder;
 use crate::output::frames::Frames;
 use crate::output::ledger::{Entry, Ledger};
@@ -30,7 +30,7 @@ use writer::Writer;
 
 /// Seconds on the clock from the first step to the checkpoint after it, and between two at most; the pause doubles from one
 /// to the next.
-const PAUSES: [f64; 2] = [0.5, 30.0];
+const PAUSES: [f64; 2] = [0.8, 30.0];
 /// A checkpoint is saved again once this many times the last one's cost has passed.
 const CHECKPOINT: f64 = 50.0;
 /// The series are joined into `result.nc` again once this many times the last join's cost has passed.
@@ -139,8 +139,9 @@ impl Files {
         files.frame(run)?;
         files.schedule.plan(run);
         files.series.plan(run);
-        // From the first instant on a run that is killed goes on.
-        files.checkpoint(run, None)?;
+        // From the first instant on a run that is killed goes on; what it begins with its case makes again.
+        let begin = Checkpoint { arrays: Vec::new(), ..files.state(run, None)? };
+        files.save(&begin)?;
         Ok(files)
     }
 
@@ -288,6 +289,16 @@ impl Files {
 
     /// Save what goes on from here, with every frame and line so far.
     fn checkpoint(&mut self, run: &dyn Run, ended: Option<StopReason>) -> Result<(), output::Error> {
+        let state = self.state(run, ended)?;
+        self.save(&state)
+    }
+
+    /// What goes on from here; every frame and line so far is handed over.
+    fn state<'a>(
+        &mut self,
+        run: &'a dyn Run,
+        ended: Option<StopReason>,
+    ) -> Result<Checkpoint<'a>, output::Error> {
         self.saved = Instant::now();
         self.hand_over()?;
         let [frame, line] = self.schedule.next();
@@ -296,7 +307,11 @@ impl Files {
             every: [self.schedule.every(), self.series.every()],
         };
         let past = self.past_and_now();
-        self.writer.checkpoint(&checkpoints::of(run, (&self.origin, &past), due, ended))?;
+        Ok(checkpoints::of(run, (&self.origin, &past), due, ended))
+    }
+
+    fn save(&mut self, checkpoint: &Checkpoint) -> Result<(), output::Error> {
+        self.writer.checkpoint(checkpoint)?;
         (self.cost, self.saving) = (self.saved.elapsed().as_secs_f64(), true);
         Ok(())
     }

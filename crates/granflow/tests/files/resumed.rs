@@ -1,6 +1,7 @@
 //! Runs that end before their time: full disks, failures, interruptions, and what goes on from there.
 
 use super::*;
+use granflow::session::restore;
 
 /// The disk fills up while the run goes on, written to by another thread: it ends soon, says which file and what helps, and
 /// goes on from its checkpoint to the bits of the unbroken run.
@@ -43,6 +44,54 @@ fn a_full_disk_ends_the_run_and_nothing_complete_is_lost() {
     for file in ["mass.csv", "checkpoint/frames.bin"] {
         assert!(fs::read(whole.join(file)).unwrap() == fs::read(parts.join(file)).unwrap(), "{file} differs");
     }
+}
+
+/// What is saved before the first step holds no numbers, for the case makes them again; a run that was killed right then goes on to the
+/// bits of the unbroken one, with all that is kept beside the state.
+#[test]
+fn from_the_first_checkpoint_the_bits_are_those_of_the_unbroken_run() {
+    let folder = tempfile::tempdir().unwrap();
+    let beside = [
+        "output.durations={ thickness = 0.1 }",
+        r#"gauge=[{ name = "foot", at = [1075.0, 2110.0] }]"#,
+        r#"entrainment={ layer = 0.3, law = "plough", lower_bed = true }"#,
+    ];
+    let case = with(&file(folder.path()), &beside);
+    let [whole, killed] = ["whole", "killed"].map(|name| folder.path().join(name));
+    let state = whole.join("checkpoint/state.bin");
+    let mut copied = false;
+    let unbroken = begin(&case, &whole, false, &mut |_| {
+        if !copied {
+            while !state.exists() {
+                std::thread::sleep(Duration::from_millis(1));
+            }
+            assert!(fs::metadata(&state).unwrap().len() < 10_000);
+            fs::create_dir_all(killed.join("checkpoint")).unwrap();
+            for name in ["mass.csv", "gauges.csv", "checkpoint/frames.bin", "checkpoint/state.bin"] {
+                fs::copy(whole.join(name), killed.join(name)).unwrap();
+            }
+            copied = true;
+        }
+        false
+    });
+    let first = folder.path().join("first.bin");
+    fs::copy(killed.join("checkpoint/state.bin"), &first).unwrap();
+    let resumed = begin(&case, &killed, true, &mut |_| false).unwrap().summary;
+    assert_eq!(resumed.steps, unbroken.unwrap().summary.steps);
+    for name in ["mass.csv", "gauges.csv", "checkpoint/frames.bin"] {
+        assert!(
+            fs::read(whole.join(name)).unwrap() == fs::read(killed.join(name)).unwrap(),
+            "{name} differs"
+        );
+    }
+    // A run that has gone on is not what its case makes.
+    let checked = case.check().unwrap();
+    let made_of = origin(checked.plan(), &granflow::Inputs::default()).unwrap();
+    let mut run = checked.start().unwrap();
+    assert_eq!(restore(&mut *run, &made_of, &first).unwrap().len(), 0);
+    run.until(1.0).unwrap();
+    let refused = restore(&mut *run, &made_of, &first).unwrap_err().to_string();
+    assert!(refused.contains("first.bin") && refused.contains("before the first step"), "{refused}");
 }
 
 /// What rests needs no further step; what is begun anew does not go on from an older run.

@@ -94,7 +94,7 @@ pub(super) struct Taken {
     pub past: Past,
 }
 
-/// Read a checkpoint that a run of the same kind goes on from with this origin.
+/// Read a checkpoint that a run of the same kind, still as its case made it, goes on from with this origin.
 pub(super) fn read(
     path: &Path,
     origin: &Origin,
@@ -123,9 +123,18 @@ pub(super) fn read(
     let mut arrays = |list: &str| -> Vec<Cow<'static, [f64]>> {
         (0..).map_while(|k| saved.take(&format!("{list}_{k}"))).map(Cow::Owned).collect()
     };
-    let [state, durations, model] = ["state", "duration", "model"].map(&mut arrays);
+    let [mut state, mut durations, mut model] = ["state", "duration", "model"].map(&mut arrays);
     let single = |values: Vec<f64>| Cow::Owned(values.into_iter().map(|value| value as f32).collect());
-    let maps = names.into_iter().filter_map(|name| Some((name, single(saved.take(name)?)))).collect();
+    let mut maps = names.into_iter().filter_map(|name| Some((name, single(saved.take(name)?)))).collect();
+    if saved.step == 0 && state.is_empty() {
+        // Saved as it began: the case has made it again.
+        if run.steps() > 0 {
+            let problem =
+                "it was saved before the first step and holds no state; make the run anew in its place";
+            return Err(output::Error::mismatch(path, problem).into());
+        }
+        Saved { state, durations, model, maps, .. } = now.into_owned();
+    }
     let (ended, past) = (saved.ended, std::mem::take(&mut saved.past));
     let saved = Saved { cells, clock, state, maps, at_rest, drift, model, passed, durations, record };
     Ok((saved, Taken { due, marks, ended, changes, past }))

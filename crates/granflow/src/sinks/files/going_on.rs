@@ -4,7 +4,7 @@ use super::checkpoints::{self, Taken};
 use super::ended::Left;
 use super::{BeginError, Files, Series, frames_in, ledger_in};
 use crate::output;
-use crate::output::checkpoint::Origin;
+use crate::output::checkpoint::{Checkpoint, Origin};
 use crate::output::folder::Folder;
 use crate::output::frames::Frames;
 use crate::output::ledger::Ledger;
@@ -62,7 +62,7 @@ impl Files {
         tables.iter().flatten().try_for_each(Lines::cut)?;
         let [frame, line, look] = due.next;
         series.resumed(look, run.time());
-        let no_step_back = left.is_some() && changes.is_empty() && forgotten(directory, &origin, run, ended)?;
+        let no_step_back = left.is_some() && changes.is_empty() && forgotten(directory, &origin, ended)?;
         let mut files = Self::over(folder, plan, origin, command, run, (frames, ledger, tables), series)?;
         (files.past, files.at_end) = (past, place == Place::End && changes.is_empty());
         files.schedule.resume([frame, line]);
@@ -113,15 +113,9 @@ enum Place {
 }
 
 /// Removes the checkpoint before the last step where it cannot be read: it would be refused later, and nothing makes it again.
-fn forgotten(
-    directory: &Path,
-    origin: &Origin,
-    run: &dyn Run,
-    ended: Option<StopReason>,
-) -> Result<bool, BeginError> {
+fn forgotten(directory: &Path, origin: &Origin, ended: Option<StopReason>) -> Result<bool, BeginError> {
     let path = checkpoints::before_end_in(directory);
-    if ended != Some(StopReason::EndTime) || (path.exists() && checkpoints::read(&path, origin, run).is_ok())
-    {
+    if ended != Some(StopReason::EndTime) || (path.exists() && Checkpoint::read(&path, origin).is_ok()) {
         return Ok(false);
     }
     output::remove_if_there(&path)?;
@@ -170,6 +164,11 @@ fn taken_up(
         saved.at_rest = false;
         saved.record.flowed = saved.clock[0];
     }
+    let goes_back = last.ended == Some(StopReason::EndTime) && !other && !last.changes.is_empty();
+    let before = checkpoints::before_end_in(directory);
+    // Read while the run is as its case makes it: of one saved as it began that is the state.
+    let before =
+        if goes_back && before.exists() { Some(checkpoints::read(&before, origin, run)?) } else { None };
     run.restore(saved).map_err(refused)?;
     if last.ended.is_none() {
         return Ok((last, Place::Within, left));
@@ -180,11 +179,7 @@ fn taken_up(
     if let (Some(reason), Some(left)) = (reached(run, &plan.ends), &left) {
         return Err(left.over(directory, reason));
     }
-    let before = checkpoints::before_end_in(directory);
-    if last.ended != Some(StopReason::EndTime) || !before.exists() {
-        return Ok((last, Place::End, left));
-    }
-    let (saved, before) = checkpoints::read(&before, origin, run)?;
+    let Some((saved, before)) = before else { return Ok((last, Place::End, left)) };
     run.restore(saved).map_err(refused)?;
     Ok((Taken { ended: last.ended, ..before }, Place::BeforeEnd, left))
 }
