@@ -18,7 +18,6 @@ use crate::output::lines::Lines;
 use crate::output::netcdf::history;
 use crate::output::summary::{StopReason, Summary};
 use crate::results::numbers::Start;
-use crate::results::{FilesError, Finished};
 use crate::run::{Run, check_state};
 use crate::watch::Watch;
 use checkpoints::Due as DueBeside;
@@ -314,57 +313,6 @@ impl Files {
         self.writer.checkpoint(checkpoint)?;
         (self.cost, self.saving) = (self.saved.elapsed().as_secs_f64(), true);
         Ok(())
-    }
-
-    /// Save the state at the end; of one that the end may have cut the checkpoint before it too.
-    fn last_checkpoint(&mut self, run: &dyn Run, reason: StopReason) -> Result<(), output::Error> {
-        let before_end = checkpoints::before_end_in(self.folder.path());
-        if reason == StopReason::EndTime {
-            self.writer.keep(before_end)?;
-        } else {
-            output::remove_if_there(&before_end)?;
-        }
-        // Before the last frame: where an interrupted run ends an unbroken one has none.
-        self.checkpoint(run, Some(reason).filter(|reason| *reason != StopReason::Interrupted))
-    }
-
-    /// Write the last frame and everything that the case asks for. What is done with is given back on the way: to end takes
-    /// no more memory than to compute. A run that was interrupted within a step, between two instants of it, goes on from the
-    /// checkpoint before that step.
-    ///
-    /// # Errors
-    /// [`FilesError`]; what was complete before stays complete.
-    pub fn finish(mut self, mut run: Box<dyn Run>, reason: StopReason) -> Result<Finished, FilesError> {
-        if self.shown == run.steps() {
-            if !self.at_end {
-                self.last_checkpoint(&*run, reason)?;
-            }
-            if self.written[0] != run.time() {
-                self.frame(&mut *run)?;
-            }
-        }
-        self.hand_over()?;
-        let ending = Ending::last(&self, run, reason);
-        let (frames, ledger) = self.writer.end()?;
-        let finished = ending.finished(Some(self.folder), frames, ledger.into_entries());
-        finished.write()?;
-        Ok(finished)
-    }
-
-    /// Save the frames before a step that failed, and say in `summary.json` that and why it did; the state after it is worth
-    /// nothing.
-    ///
-    /// # Errors
-    /// [`output::Error`] naming the file.
-    pub fn give_up(mut self, run: Box<dyn Run>, failure: &str) -> Result<Finished, output::Error> {
-        self.hand_over()?;
-        let mut ending = Ending::last(&self, run, StopReason::Failed);
-        ending.explain(failure);
-        let (frames, ledger) = self.writer.end()?;
-        let finished = ending.finished(Some(self.folder), frames, ledger.into_entries());
-        finished.write_result()?;
-        finished.summary.write(&finished.directory.join("summary.json"))?;
-        Ok(finished)
     }
 }
 
