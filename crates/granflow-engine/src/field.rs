@@ -170,10 +170,12 @@ impl Field {
     }
     /// Where the arrays begin, to be read with the precision of `P`.
     pub(crate) fn starts<P: Components<f64>>(&self) -> [*const u8; MAX_COMPONENTS] {
-        std::array::from_fn(|k| {
-            let double = || self.doubles.get(k).map_or(std::ptr::null(), |part| part.as_ptr().cast());
-            if has(P::F32_MASK, k) { self.singles[k].as_ptr().cast() } else { double() }
-        })
+        let mut starts = [std::ptr::null(); MAX_COMPONENTS];
+        for (k, start) in starts.iter_mut().enumerate().take(P::COUNT) {
+            let single = has(P::F32_MASK, k);
+            *start = if single { self.singles[k].as_ptr().cast() } else { self.doubles[k].as_ptr().cast() };
+        }
+        starts
     }
 }
 

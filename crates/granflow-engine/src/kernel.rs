@@ -49,7 +49,7 @@ impl<const D: usize, S> Loops<D, S> {
 ///
 /// Everything that a scheme does on lanes must be inlined whole: give its functions `#[inline(always)]`, and write loops
 /// over axes with [`granflow_model::real::per_axis`] and [`granflow_model::real::for_axis`] instead of `map` and `from_fn`, and
-/// [`granflow_model::real::all`] instead of `[value; D]`.
+/// [`granflow_model::real::repeated`] instead of `[value; D]`.
 /// A function that is left as a call is still right, but slow. `crates/granflow-engine/tests/own_scheme.rs` has schemes of its own.
 #[macro_export]
 macro_rules! kernel {

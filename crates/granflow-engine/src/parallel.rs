@@ -14,7 +14,7 @@ mod pool {
     pub(crate) fn threads() -> usize {
         rayon::current_num_threads()
     }
-    /// Each number below `count`; a thread that is free takes one of them, or `together` in a row.
+    /// Each number below `count`, once; a thread that is free takes at most `together` of them.
     pub(super) fn each(count: usize, together: usize, work: &(dyn Fn(usize) + Sync)) {
         (0..count).into_par_iter().with_max_len(together).for_each(work);
     }
@@ -26,7 +26,7 @@ mod pool {
     pub(crate) fn threads() -> usize {
         1
     }
-    /// Each number below `count`.
+    /// Each number below `count`, once.
     pub(super) fn each(count: usize, _together: usize, work: &(dyn Fn(usize) + Sync)) {
         (0..count).for_each(work);
     }

@@ -101,9 +101,9 @@ impl<const D: usize, L: SimdVector, S: Scheme<D, f64>, I: SimdContext> SchemeVis
                         let changes = changes.slice(range.start * tracked..range.end * tracked);
                         (stats.slice(range.clone()), changes)
                     };
-                    let block = (sweep, &targets, context);
+                    let how = (sweep, &targets, context);
                     let memory = (&mut scratch, &mut reducer);
-                    strip::run::<D, L, T, S, I>(block, scheme, tiles, *across, found, memory);
+                    strip::run::<D, L, T, S>(how, scheme, tiles, *across, found, memory);
                 }
             });
         });

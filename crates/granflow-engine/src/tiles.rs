@@ -69,6 +69,12 @@ pub(crate) struct TileStats {
     pub activity: Activity,
 }
 
+impl Default for TileStats {
+    fn default() -> Self {
+        Self::NONE
+    }
+}
+
 impl TileStats {
     /// Of no cell.
     pub const NONE: TileStats = TileStats {

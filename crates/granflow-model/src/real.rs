@@ -249,18 +249,14 @@ impl<const N: usize> Count<N> {
     /// So many of three, from the first on.
     #[inline(always)]
     pub const fn of<T: Copy>(self, three: [T; 3]) -> [T; N] {
-        const { assert!(N <= 3, "an array of more than three items") };
-        match three.first_chunk() {
-            Some(items) => *items,
-            None => unreachable!(),
-        }
+        *three.first_chunk().expect("an array of at most three items")
     }
 }
 
 /// An array of at most three items that are the same. (`[value; N]` is a loop for the compiler, to be unrolled in each place where
 /// it is inlined: a third of the time that the loops of a sweep take to compile.)
 #[inline(always)]
-pub const fn all<T: Copy, const N: usize>(value: T) -> [T; N] {
+pub const fn repeated<T: Copy, const N: usize>(value: T) -> [T; N] {
     Count.of([value, value, value])
 }
 

@@ -1,6 +1,6 @@
 //! A scheme is a few pointwise functions; arrays, axes, threads and files live elsewhere.
 
-use crate::real::{Real, all, for_axis, per_axis};
+use crate::real::{Real, for_axis, per_axis, repeated};
 use crate::time::Stages;
 
 /// A value of a cell that is stored as a few numbers, one array each (struct of arrays).
@@ -22,11 +22,14 @@ pub trait Components<R: Real>: Copy + Send + Sync + 'static {
 /// The most numbers that the state, the ground or the forcing of a scheme may have. (Face states and fluxes may have any number.)
 pub const MAX_COMPONENTS: usize = 16;
 
-/// The numbers of a value, and zeros behind them.
+/// The numbers of a value of at most [`MAX_COMPONENTS`], and zeros behind them.
+///
+/// # Panics
+/// If it has more.
 #[inline(always)]
 pub fn numbers<R: Real, P: Components<R>>(value: P) -> [R; MAX_COMPONENTS] {
     let zero = R::zero();
-    // One by one: `[zero; 16]` would be a loop for the compiler ([`crate::real::all`]).
+    // One by one: `[zero; 16]` would be a loop for the compiler ([`crate::real::repeated`]).
     let mut numbers =
         [zero, zero, zero, zero, zero, zero, zero, zero, zero, zero, zero, zero, zero, zero, zero, zero];
     value.store(
@@ -174,7 +177,7 @@ pub trait Stencil<const D: usize, R: Real, S: Copy, G: Copy, F: Copy = ()> {
     #[inline(always)]
     fn star(&self) -> Neighbours<D, R, S, G, F> {
         let here = self.at([0; D]);
-        let (mut lo, mut hi) = (all(here), all(here));
+        let (mut lo, mut hi) = (repeated(here), repeated(here));
         for_axis!(axis in D => {
             let mut step = [0; D];
             step[axis] = 1;

@@ -42,7 +42,8 @@ pub(crate) trait SimdContext: Copy + Send + Sync {
     fn call<T>(self, work: impl FnOnce() -> T) -> T;
 }
 
-/// Functions that call another one where some instructions are allowed. Everything that runs on lanes is inlined into them.
+/// Functions that call another one where some instructions are allowed. What runs on lanes in every row is inlined into them; what
+/// is asked once a block may be outside, where each instruction is a call.
 ///
 /// Each kernel has functions of its own, in a module of its own ([`crate::contexts`]): the compiler places what it generates by
 /// module, so that it can work on several kernels at a time, and leaves those that have not changed.

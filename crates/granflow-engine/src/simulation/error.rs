@@ -198,5 +198,14 @@ mod tests {
             error.to_string(),
             "the Courant number is 0.51: the scheme takes numbers above 0 and up to 0.5"
         );
+        let of = |grid: &Grid<2>, step, stages| check(grid, step, 0.5, stages).unwrap_err().to_string();
+        for (text, part) in [
+            (of(&grid([3, 0], [0.5; 2]), step, 2), "0 cells along y: give it at least 1"),
+            (of(&grid([3, 2], [-1.0, 0.5]), step, 2), "the cell size along x is -1e0: give a positive"),
+            (of(&good, StepSize::Fixed(0.0), 2), "the fixed step is 0e0: give a positive"),
+            (of(&good, step, 3), "has 3 stages: this engine takes up to 2"),
+        ] {
+            assert!(text.contains(part), "{text}");
+        }
     }
 }

@@ -24,9 +24,7 @@ impl<const D: usize, S: Scheme<D, f64>> Simulation<D, S> {
     }
     /// Rates and speeds of the state as it stands (needed once, before the first step or after a restart).
     pub(super) fn rescan(&mut self) {
-        let mut stats = std::mem::take(&mut self.stats);
-        parallel::for_each_chunk_mut(&mut stats, 1, |number, stats| stats[0] = self.scanned_tile(number));
-        self.stats = stats;
+        self.stats = parallel::map(self.tiles.len(), |number| self.scanned_tile(number));
         // Nothing is known of the change before the next step.
         self.changes.fill(f64::INFINITY);
         self.outdated.fill(true);

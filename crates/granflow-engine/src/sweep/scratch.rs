@@ -135,7 +135,9 @@ impl<L: SimdVector, P: Components<L>> Row<'_, L, P> {
             unsafe {
                 let start = self.start.add(k * ROW);
                 *start.add(PADDING - 1) = *start.add(PADDING);
-                std::slice::from_raw_parts_mut(start.add(PADDING + end), PADDING).fill(0.0);
+                for m in (0..PADDING).step_by(L::WIDTH) {
+                    L::zero().store(start.add(PADDING + end + m));
+                }
             }
         }
     }

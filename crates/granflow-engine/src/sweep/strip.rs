@@ -101,16 +101,8 @@ pub(super) const fn same<L: SimdVector, S: Components<f64>, T: Components<L>>() 
 }
 
 /// Compute a rectangle of tiles, `across` side by side, row by row; leave what was found in each, and its changes.
-pub(super) fn run<
-    'a,
-    't,
-    const D: usize,
-    L: SimdVector,
-    T: Scheme<D, L>,
-    S: Scheme<D, f64>,
-    I: SimdContext,
->(
-    (sweep, targets, context): (&Sweep<'a>, &'a Targets<'a>, I),
+pub(super) fn run<'a, 't, const D: usize, L: SimdVector, T: Scheme<D, L>, S: Scheme<D, f64>>(
+    (sweep, targets, context): (&Sweep<'a>, &'a Targets<'a>, impl SimdContext),
     scheme: &T,
     tiles: impl Iterator<Item = &'t Tile> + Clone,
     across: usize,
@@ -143,8 +135,10 @@ impl<'a, const D: usize, const UNIFORM: bool, L: SimdVector, T: Scheme<D, L>> St
     ) -> Self {
         let corner = tiles.next().map_or([0; 2], |tile| [tile.columns[0], tile.rows[0]]);
         let place = sweep.layout.place(corner[0] as isize, corner[1] as isize);
-        let start =
-            |array: &Option<DisjointSlice>| array.as_ref().map_or(std::ptr::null_mut(), |a| a.start());
+        let mut to = [std::ptr::null_mut(); MAX_COMPONENTS];
+        for (start, array) in to.iter_mut().zip(targets.to.iter().flatten()) {
+            *start = array.start();
+        }
         Strip {
             layout: sweep.layout,
             scheme: *scheme,
@@ -155,7 +149,7 @@ impl<'a, const D: usize, const UNIFORM: bool, L: SimdVector, T: Scheme<D, L>> St
                 everywhere::<L, S::Ground, _>(sweep.grounds.get(place)),
                 everywhere::<L, S::Forcing, _>(sweep.forcings.get(place)),
             ),
-            to: targets.to.each_ref().map(start),
+            to,
             maps: targets.maps.as_ref(),
             outlets: sweep.outlets,
             spacing: Spacing::new(per_axis!(k => sweep.size[k])),

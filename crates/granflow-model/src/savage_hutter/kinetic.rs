@@ -8,7 +8,7 @@ use super::flux::{Density, Half};
 use super::friction::{Coulomb, Friction};
 use super::ground::{Bed, Chute, Towards};
 use super::{Flow, normal};
-use crate::real::{Real, all, dot, for_axis, per_axis};
+use crate::real::{Real, dot, for_axis, per_axis, repeated};
 use crate::scheme::{
     Cell, Diagnostics, Faces, Forecasts, Neighbours, Scheme, SchemeVisitor, Side, Spacing, Stencil,
     components,
@@ -212,7 +212,7 @@ impl Kinetic {
     ) -> [R; D] {
         let h = near.here.state.h;
         match self.variant.static_depth {
-            StaticDepth::New => all(resting_h),
+            StaticDepth::New => repeated(resting_h),
             StaticDepth::Smoothed => per_axis!(k => {
                 ((near.lo[k].state.h + near.hi[k].state.h) + (h + h)) * R::splat(0.25)
             }),

@@ -2,12 +2,12 @@
 
 use super::inputs::Input;
 use super::{Error, remove_if_there, remove_leftovers, whole_file};
-use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 use std::fmt;
 use std::fs::{self, File, OpenOptions, TryLockError};
 use std::io::{self, Read, Seek, Write};
 use std::path::{Path, PathBuf};
+use std::sync::Mutex;
 
 /// What a run leaves; an earlier run was here if one of the first five is there.
 const FILES: [&str; 22] = [
@@ -198,11 +198,29 @@ impl Folder {
                 names.push(format!("{folder}/{}", name.to_string_lossy()));
             }
         }
-        names.sort();
-        let files: Result<Vec<Input>, Error> =
-            names.par_iter().map(|name| Input::left(&self.path.join(name), Path::new(name))).collect();
-        let list = List::of(files?);
+        let mut files = self.sums(names)?;
+        files.sort_by(|one, other| one.name.cmp(&other.name));
+        let list = List::of(files);
         whole_file(&self.path.join(LEFT), |out| serde_json::to_writer(out, &list).map_err(io::Error::from))
+    }
+
+    /// Lengths and checksums of files, by a thread for each core; not rayon's, for a process that is a fork of another has none of them.
+    fn sums(&self, mut names: Vec<String>) -> Result<Vec<Input>, Error> {
+        // The largest is the last in the list and the first to be read.
+        names.sort_by_key(|name| fs::metadata(self.path.join(name)).map_or(0, |file| file.len()));
+        let threads = std::thread::available_parallelism().map_or(1, usize::from).min(names.len());
+        let names = Mutex::new(names);
+        let next = || names.lock().expect("nobody panics with it").pop();
+        let sum = |name: String| Input::left(&self.path.join(&name), Path::new(&name));
+        let some = || std::iter::from_fn(next).map(sum).collect::<Result<Vec<Input>, Error>>();
+        std::thread::scope(|scope| {
+            let others: Vec<_> = (1..threads).map(|_| scope.spawn(some)).collect();
+            let mut files = some()?;
+            for other in others {
+                files.extend(other.join().unwrap_or_else(|panic| std::panic::resume_unwind(panic))?);
+            }
+            Ok(files)
+        })
     }
 
     /// How many files a finished run left, and what became of those that are not as it left them.

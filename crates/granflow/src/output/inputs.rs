@@ -1,10 +1,9 @@
 //! What the files that a case names hold, so that a run does not go on with others than it began with.
 
 use super::Error;
-use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
-use std::fs::{self, File};
-use std::io::{self, Read, Seek, SeekFrom};
+use std::fs::File;
+use std::io::{Read, Seek, SeekFrom};
 use std::path::{Path, PathBuf};
 
 /// A file that a run was made of, or that it left.
@@ -76,34 +75,16 @@ impl Input {
 
     /// The file at `path`, called `name`.
     pub(super) fn of(path: &Path, name: &Path) -> Result<Input, Error> {
-        let length = fs::metadata(path).map_err(Error::io(path, "read"))?.len();
-        let pieces = (0..length.div_ceil(PIECE)).into_par_iter().map(|k| piece(path, k * PIECE));
-        let pieces: io::Result<Vec<(crc32fast::Hasher, u64)>> = pieces.collect();
-        let (mut crc, mut bytes) = (crc32fast::Hasher::new(), 0);
-        for (own, read) in pieces.map_err(Error::io(path, "read"))? {
-            crc.combine(&own);
-            bytes += read;
+        let mut file = File::open(path).map_err(Error::io(path, "read"))?;
+        let (mut crc, mut bytes, mut part) = (crc32fast::Hasher::new(), 0, vec![0; 1 << 18]);
+        loop {
+            let read = file.read(&mut part).map_err(Error::io(path, "read"))?;
+            if read == 0 {
+                return Ok(Input { name: name.to_string_lossy().into_owned(), bytes, crc: crc.finalize() });
+            }
+            crc.update(&part[..read]);
+            bytes += read as u64;
         }
-        Ok(Input { name: name.to_string_lossy().into_owned(), bytes, crc: crc.finalize() })
-    }
-}
-
-/// Bytes that a thread reads of a file.
-const PIECE: u64 = 1 << 22;
-
-/// The checksum of the piece of a file that begins at `from`, and its length.
-fn piece(path: &Path, from: u64) -> io::Result<(crc32fast::Hasher, u64)> {
-    let mut file = File::open(path)?;
-    file.seek(SeekFrom::Start(from))?;
-    let (mut rest, mut crc, mut bytes, mut part) =
-        (file.take(PIECE), crc32fast::Hasher::new(), 0, vec![0; 1 << 18]);
-    loop {
-        let read = rest.read(&mut part)?;
-        if read == 0 {
-            return Ok((crc, bytes));
-        }
-        crc.update(&part[..read]);
-        bytes += read as u64;
     }
 }
 
@@ -128,18 +109,7 @@ pub(super) fn difference(then: &[Input], now: &[Input]) -> Option<String> {
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn a_file_of_many_pieces_has_the_checksum_of_the_whole() {
-        let folder = tempfile::tempdir().unwrap();
-        let path = folder.path().join("result.nc");
-        for length in [0, 1, PIECE - 1, PIECE, 2 * PIECE + 7] {
-            let whole: Vec<u8> = (0..length).map(|k| (k * k / 7) as u8).collect();
-            fs::write(&path, &whole).unwrap();
-            let input = Input::of(&path, &path).unwrap();
-            assert_eq!((input.bytes, input.crc), (length, crc32fast::hash(&whole)));
-        }
-    }
+    use std::fs;
 
     #[test]
     fn files_that_end_with_their_checksum_are_told_apart() {

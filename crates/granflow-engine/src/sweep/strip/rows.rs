@@ -6,6 +6,7 @@ use crate::lanes::{SimdContext, SimdVector};
 use crate::sweep::reducer::TileReducer;
 use crate::sweep::scratch::{Row as ScratchRow, Scratch};
 use crate::tiles::{Tile, TileStats};
+use granflow_model::real::repeated;
 use granflow_model::scheme::{Components, Faces, Forecasts, Scheme};
 
 /// A row under way: the columns of the block, the row whose face states are found, the first row of the block.
@@ -32,8 +33,8 @@ impl Row {
 impl<const D: usize, const UNIFORM: bool, L: SimdVector, T: Scheme<D, L>> Strip<'_, D, UNIFORM, L, T> {
     /// Compute the tiles from the lowest row to the highest.
     ///
-    /// What runs on lanes is called in pieces of a row, each a function of its own: one for all rows would take the compiler three
-    /// times as long.
+    /// What runs on lanes is called in pieces of a row, each a function of its own: one for all rows would take the compiler twice as
+    /// long.
     pub(super) fn sweep<'t>(
         &self,
         context: impl SimdContext,
@@ -46,7 +47,6 @@ impl<const D: usize, const UNIFORM: bool, L: SimdVector, T: Scheme<D, L>> Strip<
         let columns = [lowest.columns[0], highest.columns[1]];
         let (first, end) = (lowest.rows[0] as isize, highest.rows[1] as isize);
         self.mark_strip(columns, scratch);
-        let outlet = tiles.clone().any(|tile| !tile.outlets.is_empty());
         for stats in &mut *found {
             stats.outflow = TileStats::NONE.outflow;
         }
@@ -68,25 +68,23 @@ impl<const D: usize, const UNIFORM: bool, L: SimdVector, T: Scheme<D, L>> Strip<
                 #[inline(always)]
                 || self.find_fluxes_along_x(row, scratch.reborrow()),
             );
-            if outlet {
-                for (tile, k) in tile_row.clone().take(across).zip(from..) {
-                    context.call(
-                        #[inline(always)]
-                        || self.add_outflow(&mut found[k].outflow, tile, columns, j, scratch, false),
-                    );
-                }
+            let leave = tile_row.clone().take(across).zip(&mut found[from..]);
+            for (tile, found) in leave.filter(|(tile, _)| !tile.outlets.is_empty()) {
+                context.call(
+                    #[inline(always)]
+                    || self.add_outflow(&mut found.outflow, tile, columns, j, scratch, false),
+                );
             }
             context.call(
                 #[inline(always)]
                 || self.update_row(row, scratch.reborrow(), reducer),
             );
-            if outlet {
-                for (tile, k) in tile_row.clone().take(across).zip(from..) {
-                    context.call(
-                        #[inline(always)]
-                        || self.add_outflow(&mut found[k].outflow, tile, columns, j, scratch, true),
-                    );
-                }
+            let leave = tile_row.clone().take(across).zip(&mut found[from..]);
+            for (tile, found) in leave.filter(|(tile, _)| !tile.outlets.is_empty()) {
+                context.call(
+                    #[inline(always)]
+                    || self.add_outflow(&mut found.outflow, tile, columns, j, scratch, true),
+                );
             }
             let Some(&Tile { rows: [bottom, top], .. }) = tile_row.clone().next() else { continue };
             reducer.pass((j + 1 - bottom as isize).max(0) as usize, top - bottom, self.reach);
@@ -172,7 +170,7 @@ impl<const D: usize, const UNIFORM: bool, L: SimdVector, T: Scheme<D, L>> Strip<
         let here = &rows[row.third(row.number)];
         // SAFETY: as the caller promises.
         unsafe {
-            let (mut lo, mut hi) = ([here.get(at - 1); D], [here.get(at + 1); D]);
+            let (mut lo, mut hi) = (repeated(here.get(at - 1)), repeated(here.get(at + 1)));
             if D > 1 {
                 lo[D - 1] = rows[row.third(row.number - 1)].get(at);
                 hi[D - 1] = rows[row.third(row.number + 1)].get(at);
@@ -230,7 +228,7 @@ impl<const D: usize, const UNIFORM: bool, L: SimdVector, T: Scheme<D, L>> Strip<
             // numbers of other strips, and what is made of them is not used.)
             unsafe {
                 let states = here.get(at);
-                let mut faces = [Faces { lo: across.get(at), hi: across.get(at + 1) }; D];
+                let mut faces: [_; D] = repeated(Faces { lo: across.get(at), hi: across.get(at + 1) });
                 if D > 1 {
                     let up = self.scheme.flux(D - 1, &states, &above.get(at), self.lambda(D - 1));
                     faces[D - 1] = Faces { lo: below.get(at), hi: up };

@@ -2,7 +2,7 @@
 
 use crate::hadeler_kuttler::Ground;
 use crate::limiter::Limited;
-use crate::real::{Real, all};
+use crate::real::{Real, repeated};
 use crate::scheme::{Components, components};
 
 /// Cells along each axis at a corner.
@@ -45,7 +45,7 @@ components!([const D: usize, R: Real] Halves<D, R> { v: [R; D], slope: [R; D], e
 impl<const D: usize, R: Real> CellSlopes<D, R> for Halves<D, R> {
     #[inline(always)]
     fn none() -> Self {
-        let none: [R; D] = all(R::zero());
+        let none: [R; D] = repeated(R::zero());
         Halves { v: none, slope: none, edge: none, theta: R::splat(1.0) }
     }
     #[inline(always)]

@@ -3,7 +3,7 @@
 use super::cell::{CellClass, CellSlopes, FaceStates, Halves};
 use crate::hadeler_kuttler::{Ground, Pile, Source};
 use crate::limiter::minmod;
-use crate::real::{Real, all, for_axis, per_axis};
+use crate::real::{Real, for_axis, per_axis, repeated};
 use crate::scheme::{Cell, Spacing, Stencil};
 
 /// Height of the surface at the lower left node of the cell at `offset`.
@@ -25,7 +25,7 @@ pub(super) fn constant<const D: usize, R: Real, S: CellSlopes<D, R>>(
     let Cell { state, ground, forcing } = stencil.at(offset);
     let Spacing { size, inv: per, .. } = stencil.spacing();
     let half = R::splat(0.5);
-    let (mut edge, mut slope) = (all(R::zero()), all(R::zero()));
+    let (mut edge, mut slope) = (repeated(R::zero()), repeated(R::zero()));
     let here = surface(stencil, offset);
     for_axis!(k in D => {
         edge[k] = (surface(stencil, sum(offset, unit(k))) - here) * per[k];
@@ -75,7 +75,7 @@ pub(super) fn linear<const D: usize, R: Real, S: CellSlopes<D, R>>(
 ) -> FaceStates<D, R, S> {
     let half = R::splat(0.5);
     let mut edges = *here;
-    let none = all(R::zero());
+    let none = repeated(R::zero());
     let mut halves = Halves { v: none, slope: none, edge: none, theta };
     for_axis!(axis in D => {
         let step = unit::<D>(axis);

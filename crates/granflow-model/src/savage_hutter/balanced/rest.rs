@@ -2,7 +2,7 @@
 
 use super::faces::Flux;
 use super::variant::Balanced;
-use crate::real::{Real, all, for_axis, per_axis};
+use crate::real::{Real, for_axis, per_axis, repeated};
 use crate::savage_hutter::Flow;
 use crate::savage_hutter::friction::Friction;
 use crate::savage_hutter::ground::{Bed, Towards};
@@ -150,8 +150,8 @@ impl<F: Friction, B: Copy, const ORDER: u8> Balanced<F, B, ORDER> {
         let near = stencil.star();
         let (zero, per) = (R::zero(), near.spacing.inv);
         let [mut lo, mut hi, mut weight_lo, mut weight_hi]: [[R; D]; 4] =
-            [all(zero), all(zero), all(zero), all(zero)];
-        let mut bend: [R; D] = all(R::splat(1.0));
+            [repeated(zero), repeated(zero), repeated(zero), repeated(zero)];
+        let mut bend: [R; D] = repeated(R::splat(1.0));
         for_axis!(axis in D => {
             let rise = if all_open { Self::wet_jump(&near, axis) } else { self.potential_jump(&near, axis) };
             [lo[axis], hi[axis]] = rise.bed_jump;
@@ -194,7 +194,7 @@ impl<F: Friction, B: Copy, const ORDER: u8> Balanced<F, B, ORDER> {
         });
         let Cell { state, ground, .. } = &near.here;
         let zero = R::zero();
-        let [mut lo, mut hi, mut drop]: [[R; D]; 3] = [all(zero), all(zero), all(zero)];
+        let [mut lo, mut hi, mut drop]: [[R; D]; 3] = [repeated(zero), repeated(zero), repeated(zero)];
         for_axis!(axis in D => {
             let PotentialJump { whole: [a, b], weight: [c, d], .. } = self.potential_jump(&near, axis);
             (lo[axis], hi[axis]) = (a, b);

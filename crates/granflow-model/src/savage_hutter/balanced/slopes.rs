@@ -1,6 +1,6 @@
 //! How depth and velocity vary across a cell: not at all, or by limited differences.
 
-use crate::real::{Real, all, per_axis};
+use crate::real::{Real, per_axis, repeated};
 use crate::savage_hutter::ground::Towards;
 use crate::scheme::{Components, components};
 
@@ -43,7 +43,7 @@ components!([const D: usize, R: Real] Slope<D, R> { h: R, u: [R; D] });
 impl<const D: usize, R: Real> CellSlopes<D, R> for Slope<D, R> {
     #[inline(always)]
     fn none() -> Self {
-        Slope { h: R::zero(), u: all(R::zero()) }
+        Slope { h: R::zero(), u: repeated(R::zero()) }
     }
     #[inline(always)]
     fn by(h: R, u: [R; D]) -> Self {

@@ -6,7 +6,7 @@ use super::reconstruct::{FaceStatesOf, SlopesOf};
 use super::rest::StaticBalance;
 use super::slopes::{CellSlopes, Order, SlopeStorage};
 use super::variant::Balanced;
-use crate::real::{Real, all, for_axis, largest, per_axis, total};
+use crate::real::{Real, for_axis, largest, per_axis, repeated, total};
 use crate::savage_hutter::flux::{Density, Half};
 use crate::savage_hutter::friction::Friction;
 use crate::savage_hutter::ground::{Bed, Towards};
@@ -75,8 +75,8 @@ where
         let mut face_states = FaceStates {
             h: state.h,
             u,
-            slopes: [SlopesOf::<D, R, ORDER>::none(); D],
-            half: all([Half::none(), Half::none()]),
+            slopes: repeated(SlopesOf::<D, R, ORDER>::none()),
+            half: repeated([Half::none(), Half::none()]),
             plane: ground.plane(),
             class: CellClass::dry(dry),
         };
@@ -125,7 +125,7 @@ where
         let (zero, one) = (R::zero(), R::splat(1.0));
         let (half_a, half_b) = (left.half[axis][1], right.half[axis][0]);
         let class = left.class.and(right.class);
-        let mut flux = Flux { mass: zero, left: all(zero), right: all(zero), class };
+        let mut flux = Flux { mass: zero, left: repeated(zero), right: repeated(zero), class };
         let all_open = !R::any(!class.is_open());
         if all_open || R::any(left.class.is_open() | right.class.is_open()) {
             let u_a = left.slopes[axis].velocity(Towards::Hi, left.u);

@@ -2,7 +2,7 @@
 
 use super::sides::Sides;
 use crate::limiter;
-use crate::real::{Real, all, for_axis, per_axis, total};
+use crate::real::{Real, for_axis, per_axis, repeated, total};
 use crate::savage_hutter::Flow;
 use crate::savage_hutter::balanced::Order;
 use crate::savage_hutter::ground::Bed;
@@ -89,14 +89,14 @@ impl<const D: usize, R: Real> EndsOf<D, R> for Ends<D, R> {
     fn none() -> Self {
         let zero = R::zero();
         Ends {
-            smooth: all(zero),
+            smooth: repeated(zero),
             h: zero,
-            v: all(zero),
-            rise_h: all(zero),
-            rise_psi: all(zero),
-            rise_speed: all(zero),
-            rise_v: all(all(zero)),
-            given: all(zero),
+            v: repeated(zero),
+            rise_h: repeated(zero),
+            rise_psi: repeated(zero),
+            rise_speed: repeated(zero),
+            rise_v: repeated(repeated(zero)),
+            given: repeated(zero),
         }
     }
     #[inline(always)]

@@ -2,7 +2,7 @@
 
 use super::ends::EndsOf;
 use super::forecast::Motion;
-use crate::real::{Real, all};
+use crate::real::{Real, repeated};
 use crate::savage_hutter::ground::Bed;
 use crate::scheme::{Components, components};
 
@@ -65,7 +65,7 @@ impl<const D: usize, R: Real> Flux<D, R> {
     #[inline(always)]
     pub(super) fn none() -> Self {
         let zero = R::zero();
-        Flux { mass: zero, left: all(zero), right: all(zero), energy: [zero, zero] }
+        Flux { mass: zero, left: repeated(zero), right: repeated(zero), energy: [zero, zero] }
     }
 }
 

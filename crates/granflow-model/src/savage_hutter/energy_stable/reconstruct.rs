@@ -7,7 +7,7 @@ use super::force::{Downstream, UNRESOLVED, centred, is_zero, pushed};
 use super::forecast::{Forecast, Motion};
 use super::sides::Sides;
 use super::variant::EnergyStable;
-use crate::real::{Real, all, per_axis};
+use crate::real::{Real, per_axis, repeated};
 use crate::savage_hutter::Flow;
 use crate::savage_hutter::balanced::Order;
 use crate::savage_hutter::friction::{LocalFriction, Resistance};
@@ -29,8 +29,8 @@ fn closed<const D: usize, R: Real, B: Bed<D, R>, P, T: EndsOf<D, R>>(
         plane: ground.plane(),
         motion: forecast.motion,
         u: forecast.u,
-        w: all(zero),
-        free: all(zero),
+        w: repeated(zero),
+        free: repeated(zero),
         wave: zero,
         per_head: ground.per_head(),
         share: one,
@@ -38,7 +38,7 @@ fn closed<const D: usize, R: Real, B: Bed<D, R>, P, T: EndsOf<D, R>>(
         budget: zero,
         inflow: zero,
         inflow_share: zero,
-        holds: all(zero),
+        holds: repeated(zero),
         ends: T::none(),
     }
 }

@@ -2,7 +2,7 @@
 
 use super::force::{Downstream, UNRESOLVED, centred, continued, pushed};
 use super::variant::EnergyStable;
-use crate::real::{Real, all, for_axis, per_axis};
+use crate::real::{Real, for_axis, per_axis, repeated};
 use crate::savage_hutter::Flow;
 use crate::savage_hutter::friction::LocalFriction;
 use crate::savage_hutter::ground::Bed;
@@ -27,7 +27,7 @@ impl<F: LocalFriction, B: Copy, const ORDER: u8> EnergyStable<F, B, ORDER> {
         let ground = near.here.ground.exact();
         let h = near.here.state.h;
         let (surface, mut tower) = (ground.surface(h, size), zero.lt(zero));
-        let mut pull: [R; D] = all(zero);
+        let mut pull: [R; D] = repeated(zero);
         for_axis!(axis in D => {
             let bound = holding * size[axis] * B::stretch_in(&ground.plane(), axis) * R::splat(TOWER);
             let there = [&near.lo[axis], &near.hi[axis]];
@@ -96,7 +96,7 @@ impl<F: LocalFriction, B: Copy, const ORDER: u8> EnergyStable<F, B, ORDER> {
         let here = Cell { ground: near.here.ground.exact(), ..near.here };
         let bed = here.ground;
         let (size, per) = (near.spacing.size, near.spacing.inv);
-        let law = self.resistance(&here, all(zero), per);
+        let law = self.resistance(&here, repeated(zero), per);
         let surface = bed.surface(near.here.state.h, size);
         let forces: [[Downstream<R>; 2]; D] = per_axis!(axis => {
             let there = [&near.lo[axis], &near.hi[axis]];
@@ -111,7 +111,7 @@ impl<F: LocalFriction, B: Copy, const ORDER: u8> EnergyStable<F, B, ORDER> {
         // As a step from rest would push it, per time; or it holds itself by the mean forces.
         let plane = bed.plane();
         let (centred, unresolved) = centred(per_axis!(k => forces[k][0]), law.dry);
-        let pushed = pushed::<D, R, B>(&plane, all(zero), centred, one);
+        let pushed = pushed::<D, R, B>(&plane, repeated(zero), centred, one);
         let pulls = [pushed, B::metric(&plane, per_axis!(k => forces[k][1].mean))];
         let pulls: [R; 2] = per_axis!(of => B::square_in(&plane, pulls[of]).sqrt());
         let bounds = [law.holding + unresolved * R::splat(UNRESOLVED), law.holding];

@@ -1,7 +1,7 @@
 //! The papers' chute.
 
 use super::bed::{Bed, Towards, straight};
-use crate::real::{Real, all, dot, per_axis};
+use crate::real::{Real, dot, per_axis, repeated};
 use crate::scheme::components;
 
 /// The papers' chute (report eqs. 1 and 13), in their scaling; also a tilted plane in two dimensions.
@@ -108,7 +108,7 @@ impl<const D: usize, R: Real> Bed<D, R> for Chute<D, R> {
     }
     #[inline(always)]
     fn cross_force(&self, _lo: [R; D], _hi: [R; D], _per: [R; D]) -> [R; D] {
-        all(R::zero())
+        repeated(R::zero())
     }
     #[inline(always)]
     fn curvature_force(&self, _axis: usize, _lo: &Self, _hi: &Self, _per: R) -> R {

@@ -1,7 +1,7 @@
 //! A piece of a mountain.
 
 use super::bed::{Bed, Towards, straight};
-use crate::real::{Real, all, dot, for_axis, per_axis};
+use crate::real::{Real, dot, for_axis, per_axis, repeated};
 use crate::scheme::{Components, components};
 
 /// A cell of a terrain z = b(x, y), SI units (Bouchut & Westdickenberg, Commun. Math. Sci. 2, 2004, for the true
@@ -34,9 +34,9 @@ impl<const D: usize, R: Real> Terrain<D, R> {
         let zero = R::zero();
         Terrain {
             level: zero,
-            slope: all(zero),
+            slope: repeated(zero),
             cos: zero,
-            curvature: all(all(zero)),
+            curvature: repeated(repeated(zero)),
             gravity,
             pressure: gravity,
         }
@@ -225,7 +225,7 @@ impl<const D: usize, R: Real> Bed<D, R> for Terrain<D, R> {
     fn cross_force(&self, lo: [R; D], hi: [R; D], per: [R; D]) -> [R; D] {
         let straight = straight(lo, hi, per);
         let c2 = self.cos * self.cos;
-        let mut cross = all(R::zero());
+        let mut cross = repeated(R::zero());
         for_axis!(axis in D => {
             let mut others = straight;
             others[axis] = R::zero();
