@@ -80,13 +80,31 @@ impl fmt::Display for Moved {
     }
 }
 
+/// The lock of a folder.
+#[derive(Debug)]
+struct Lock {
+    file: File,
+    /// Process that took it.
+    owner: u32,
+}
+
+impl Drop for Lock {
+    /// Unlocks: to close the file is not enough where another thread starts a program meanwhile, whose process holds a copy of
+    /// every open file until that program begins. A forked copy of the owner leaves the owner's lock alone.
+    fn drop(&mut self) {
+        if self.owner == std::process::id() {
+            let _ = self.file.unlock(); // there may have been none to take
+        }
+    }
+}
+
 /// The folder, locked for as long as this lives; the system drops the lock with the process, however that ends.
 #[derive(Debug)]
 pub struct Folder {
     path: PathBuf,
     /// Folders that were made for this, the outer ones first.
     made: Vec<PathBuf>,
-    _lock: File,
+    _lock: Lock,
 }
 
 impl Folder {
@@ -109,22 +127,23 @@ impl Folder {
         let name = inner.join("lock");
         let refused = || Error::io(&name, "lock");
         let open = OpenOptions::new().read(true).write(true).create(true).truncate(false).open(&name);
-        let mut lock = open.map_err(refused())?;
-        match lock.try_lock() {
+        let mut file = open.map_err(refused())?;
+        match file.try_lock() {
             Ok(()) => {}
             Err(TryLockError::WouldBlock) => {
                 let mut holder = String::new();
-                let _ = lock.read_to_string(&mut holder); // it only makes the message longer
+                let _ = file.read_to_string(&mut holder); // it only makes the message longer
                 return Err(Error::Busy { path: path.to_owned(), holder: holder.trim().to_owned() });
             }
             // A file system without locks is used as before there were any.
             Err(TryLockError::Error(error)) if error.kind() == io::ErrorKind::Unsupported => {}
             Err(TryLockError::Error(error)) => return Err(refused()(error)),
         }
-        let note = |lock: &mut File| {
-            lock.set_len(0)?;
-            lock.rewind()?;
-            writeln!(lock, "process {}", std::process::id())
+        let mut lock = Lock { file, owner: std::process::id() };
+        let note = |lock: &mut Lock| {
+            lock.file.set_len(0)?;
+            lock.file.rewind()?;
+            writeln!(lock.file, "process {}", lock.owner)
         };
         note(&mut lock).map_err(refused())?;
         Ok(Folder { path: path.to_owned(), made, _lock: lock })
@@ -277,8 +296,11 @@ mod tests {
         for part in ["out", &std::process::id().to_string(), "--out"] {
             assert!(message.contains(part), "{message}");
         }
+        // what a process that is just being started holds of every open file
+        let copy = first._lock.file.try_clone().unwrap();
         drop(first);
         Folder::take(&path).unwrap().abandon();
+        drop(copy);
         assert!(path.exists(), "it was there before");
         let other = outside.path().join("new/out");
         Folder::take(&other).unwrap().abandon();
