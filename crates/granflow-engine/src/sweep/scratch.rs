@@ -7,10 +7,10 @@ use granflow_model::scheme::{Components, Scheme};
 use std::cell::RefCell;
 use std::marker::PhantomData;
 
-/// Room for a vector before and behind the strip.
+/// Room for a vector before the rows, and behind each.
 const PADDING: usize = MAX_LANES;
-/// Numbers in a row.
-const ROW: usize = PADDING + STRIP + PADDING;
+/// Rows of full length that are computed at a time; of shorter ones as many as fit into their place, a power of two.
+const ROWS: usize = 4;
 
 /// Numbers in a line of the cache.
 const LINE: usize = 8;
@@ -35,7 +35,7 @@ thread_local! {
 impl Workspace {
     /// Let `work` use this thread's memory, for strips of a scheme.
     pub(super) fn with<const D: usize, L: SimdVector, T: Scheme<D, L>>(work: impl FnOnce(Memory)) {
-        const { assert!(ROW.is_multiple_of(LINE) && STRIP.is_multiple_of(LINE)) };
+        const { assert!(STRIP.is_multiple_of(LINE) && PADDING.is_multiple_of(LINE)) };
         let numbers = Scratch::<D, L, T>::NUMBERS + TileReducer::numbers(T::State::COUNT);
         WORKSPACE.with_borrow_mut(|Workspace { lines, in_strip }| {
             let count = numbers.div_ceil(LINE);
@@ -70,28 +70,74 @@ impl<'a> Memory<'a> {
     }
 }
 
-/// A row of values, struct of arrays.
-pub(super) struct Row<'a, L, P> {
+/// Rows of values, struct of arrays: `KEPT` times as many as are computed at a time, each in the place of one that is no longer
+/// needed.
+pub(super) struct Rows<'a, L, P, const KEPT: usize> {
     start: *mut f64,
+    /// Numbers from one row to the next.
+    pitch: usize,
+    /// One less than there are rows, a power of two.
+    mask: usize,
     owner: PhantomData<&'a mut [f64]>,
     values: PhantomData<fn() -> (L, P)>,
 }
 
-impl<L: SimdVector, P: Components<L>> Row<'_, L, P> {
-    /// How many numbers it has.
-    const NUMBERS: usize = P::COUNT * ROW;
+/// Numbers of a component in all rows.
+const fn room(kept: usize) -> usize {
+    PADDING + kept * ROWS * (STRIP + PADDING)
+}
+
+impl<L: SimdVector, P: Components<L>, const KEPT: usize> Rows<'_, L, P, KEPT> {
+    /// How many numbers they have.
+    const NUMBERS: usize = P::COUNT * room(KEPT);
 
     /// # Safety
-    /// The numbers behind `start` belong to the row alone as long as it is used.
-    #[inline(always)]
+    /// The numbers behind `start` belong to the rows alone as long as they are used.
     unsafe fn at(start: *mut f64) -> Self {
+        Rows { start, pitch: 0, mask: 0, owner: PhantomData, values: PhantomData }
+    }
+    /// The same rows, by value.
+    #[inline(always)]
+    fn reborrow(&mut self) -> Rows<'_, L, P, KEPT> {
+        Rows { owner: PhantomData, ..*self }
+    }
+    /// Let them have `end` cells, and `at_once` of them be computed at a time.
+    fn keep(&mut self, at_once: usize, end: usize) {
+        let kept = KEPT * at_once;
+        assert!(kept.is_power_of_two() && PADDING + kept * (end + PADDING) <= room(KEPT));
+        (self.mask, self.pitch) = (kept - 1, end + PADDING);
+    }
+    /// Row `number`, two below the grid at least.
+    #[inline(always)]
+    pub(super) fn row(&self, number: isize) -> Row<'_, L, P, KEPT> {
+        // SAFETY: there are so many rows.
+        let start = unsafe { self.start.add(((number + 2) as usize & self.mask) * self.pitch) };
         Row { start, owner: PhantomData, values: PhantomData }
     }
-    /// The same row, by value.
+    /// Row `number`, to be written.
     #[inline(always)]
-    fn reborrow(&mut self) -> Row<'_, L, P> {
-        Row { start: self.start, owner: PhantomData, values: PhantomData }
+    pub(super) fn row_mut(&mut self, number: isize) -> RowMut<'_, L, P, KEPT> {
+        RowMut(self.row(number))
     }
+    /// Row `number`, and the one above to be written.
+    #[inline(always)]
+    pub(super) fn with_next(&mut self, number: isize) -> (Row<'_, L, P, KEPT>, RowMut<'_, L, P, KEPT>) {
+        const { assert!(KEPT > 1, "there is no row above") };
+        (self.row(number), RowMut(self.row(number + 1)))
+    }
+}
+
+/// One of several rows, to be read.
+pub(super) struct Row<'a, L, P, const KEPT: usize> {
+    start: *mut f64,
+    owner: PhantomData<&'a [f64]>,
+    values: PhantomData<fn() -> (L, P)>,
+}
+
+/// One of several rows, to be written.
+pub(super) struct RowMut<'a, L, P, const KEPT: usize>(Row<'a, L, P, KEPT>);
+
+impl<L: SimdVector, P: Components<L>, const KEPT: usize> Row<'_, L, P, KEPT> {
     /// The values of the cells from `at` on.
     ///
     /// # Safety
@@ -106,10 +152,21 @@ impl<L: SimdVector, P: Components<L>> Row<'_, L, P> {
             |k| {
                 assert!(k < P::COUNT);
                 // SAFETY: inside the row.
-                unsafe { L::load(self.start.add(k * ROW + place)) }
+                unsafe { L::load(self.start.add(k * room(KEPT) + place)) }
             },
         )
     }
+}
+
+impl<'a, L, P, const KEPT: usize> std::ops::Deref for RowMut<'a, L, P, KEPT> {
+    type Target = Row<'a, L, P, KEPT>;
+    #[inline(always)]
+    fn deref(&self) -> &Self::Target {
+        &self.0
+    }
+}
+
+impl<L: SimdVector, P: Components<L>, const KEPT: usize> RowMut<'_, L, P, KEPT> {
     /// Put values.
     ///
     /// # Safety
@@ -122,41 +179,26 @@ impl<L: SimdVector, P: Components<L>> Row<'_, L, P> {
             |k, part| {
                 assert!(k < P::COUNT);
                 // SAFETY: inside the row.
-                unsafe { part.store(self.start.add(k * ROW + (PADDING as isize + at) as usize)) };
+                unsafe { part.store(self.0.start.add(k * room(KEPT) + (PADDING as isize + at) as usize)) };
             },
         );
-    }
-    /// Let the place before the first be as the first, and those behind `end` be 0.
-    #[inline(always)]
-    pub(super) fn fill_halo(&mut self, end: usize) {
-        assert!(end <= STRIP);
-        for k in 0..P::COUNT {
-            // SAFETY: inside the row.
-            unsafe {
-                let start = self.start.add(k * ROW);
-                *start.add(PADDING - 1) = *start.add(PADDING);
-                for m in (0..PADDING).step_by(L::WIDTH) {
-                    L::zero().store(start.add(PADDING + end + m));
-                }
-            }
-        }
     }
 }
 
 /// The rows of a strip.
 pub(super) struct Scratch<'a, const D: usize, L: SimdVector, T: Scheme<D, L>> {
-    /// Three rows of forecasts: of the row whose face states are found, and of the ones below and above.
-    pub forecasts: [Row<'a, L, T::Forecast>; 3],
-    /// Two rows of face states: of the row that is updated and the one above.
-    pub face_states: [Row<'a, L, T::FaceStates>; 2],
-    /// Through the lower faces along x of a row.
-    pub across: Row<'a, L, T::Flux>,
-    /// Through the faces along y below a row.
-    pub below: Row<'a, L, T::Flux>,
-    /// At the lower left corners of a row, and of the row above.
-    pub corners: [Row<'a, L, T::Corner>; 2],
+    /// Forecasts: of the rows whose face states are found, and of the ones below and above.
+    pub forecasts: Rows<'a, L, T::Forecast, 4>,
+    /// Face states: of the rows that are updated and the one above.
+    pub face_states: Rows<'a, L, T::FaceStates, 2>,
+    /// Through the lower faces along x of the rows that are updated.
+    pub along_x: Rows<'a, L, T::Flux, 1>,
+    /// Through the lower faces along y of the rows that are updated and the one above.
+    pub along_y: Rows<'a, L, T::Flux, 2>,
+    /// At the lower left corners of the rows that are updated and the one above.
+    pub corners: Rows<'a, L, T::Corner, 2>,
     /// The new states of a row.
-    pub updated: Row<'a, L, T::State>,
+    pub updated: Rows<'a, L, T::State, 1>,
     /// Which cells of each vector are those of the strip, a bit each.
     pub in_strip: &'a mut [u16; STRIP],
 }
@@ -165,45 +207,54 @@ impl<'a, const D: usize, L: SimdVector, T: Scheme<D, L>> Scratch<'a, D, L, T> {
     /// The same rows, by value: a place behind a reference would be read again after every number that is written.
     #[inline(always)]
     pub(super) fn reborrow(&mut self) -> Scratch<'_, D, L, T> {
-        let Scratch { forecasts: [a, b, c], face_states: [d, e], corners: [f, g], .. } = self;
         Scratch {
-            forecasts: [a.reborrow(), b.reborrow(), c.reborrow()],
-            face_states: [d.reborrow(), e.reborrow()],
-            across: self.across.reborrow(),
-            below: self.below.reborrow(),
-            corners: [f.reborrow(), g.reborrow()],
+            forecasts: self.forecasts.reborrow(),
+            face_states: self.face_states.reborrow(),
+            along_x: self.along_x.reborrow(),
+            along_y: self.along_y.reborrow(),
+            corners: self.corners.reborrow(),
             updated: self.updated.reborrow(),
             in_strip: self.in_strip,
         }
     }
 
+    /// Let the rows have `end` cells; says how many are computed at a time.
+    pub(super) fn fit(&mut self, end: usize) -> usize {
+        let at_once = 1 << (ROWS * (STRIP + PADDING) / (end + PADDING)).ilog2();
+        self.forecasts.keep(at_once, end);
+        self.face_states.keep(at_once, end);
+        self.along_x.keep(at_once, end);
+        self.along_y.keep(at_once, end);
+        self.corners.keep(at_once, end);
+        self.updated.keep(1, end);
+        at_once
+    }
+
     /// How many numbers its rows have.
-    const NUMBERS: usize = 3 * Row::<L, T::Forecast>::NUMBERS
-        + 2 * Row::<L, T::FaceStates>::NUMBERS
-        + 2 * Row::<L, T::Flux>::NUMBERS
-        + 2 * Row::<L, T::Corner>::NUMBERS
-        + Row::<L, T::State>::NUMBERS;
+    const NUMBERS: usize = Rows::<L, T::Forecast, 4>::NUMBERS
+        + Rows::<L, T::FaceStates, 2>::NUMBERS
+        + Rows::<L, T::Flux, 1>::NUMBERS
+        + Rows::<L, T::Flux, 2>::NUMBERS
+        + Rows::<L, T::Corner, 2>::NUMBERS
+        + Rows::<L, T::State, 1>::NUMBERS;
 
     /// # Safety
     /// The [`Scratch::NUMBERS`] numbers behind `start` are borrowed for 'a.
-    #[inline(always)]
     unsafe fn at(start: *mut f64, in_strip: &'a mut [u16; STRIP]) -> Self {
-        let forecasts = Row::<L, T::Forecast>::NUMBERS;
-        let states = Row::<L, T::FaceStates>::NUMBERS;
-        let fluxes = Row::<L, T::Flux>::NUMBERS;
-        let corners = Row::<L, T::Corner>::NUMBERS;
-        // SAFETY: one row begins where the one before ends.
+        // SAFETY: those of one kind begin where those of the one before end.
         unsafe {
-            let state = start.add(3 * forecasts);
-            let across = state.add(2 * states);
-            let corner = across.add(2 * fluxes);
+            let face_states = start.add(Rows::<L, T::Forecast, 4>::NUMBERS);
+            let along_x = face_states.add(Rows::<L, T::FaceStates, 2>::NUMBERS);
+            let along_y = along_x.add(Rows::<L, T::Flux, 1>::NUMBERS);
+            let corners = along_y.add(Rows::<L, T::Flux, 2>::NUMBERS);
+            let updated = corners.add(Rows::<L, T::Corner, 2>::NUMBERS);
             Scratch {
-                forecasts: [Row::at(start), Row::at(start.add(forecasts)), Row::at(start.add(2 * forecasts))],
-                face_states: [Row::at(state), Row::at(state.add(states))],
-                across: Row::at(across),
-                below: Row::at(across.add(fluxes)),
-                corners: [Row::at(corner), Row::at(corner.add(corners))],
-                updated: Row::at(corner.add(2 * corners)),
+                forecasts: Rows::at(start),
+                face_states: Rows::at(face_states),
+                along_x: Rows::at(along_x),
+                along_y: Rows::at(along_y),
+                corners: Rows::at(corners),
+                updated: Rows::at(updated),
                 in_strip,
             }
         }

@@ -4,37 +4,31 @@ use super::update::Vector;
 use super::{Around, Strip};
 use crate::lanes::{SimdContext, SimdVector};
 use crate::sweep::reducer::TileReducer;
-use crate::sweep::scratch::{Row as ScratchRow, Scratch};
+use crate::sweep::scratch::{Row, Scratch};
 use crate::tiles::{Tile, TileStats};
 use granflow_model::real::repeated;
 use granflow_model::scheme::{Components, Faces, Forecasts, Scheme};
 
-/// A row under way: the columns of the block, the row whose face states are found, the first row of the block.
+/// Rows that are computed at a time.
 #[derive(Clone, Copy)]
-struct Row {
+struct Batch {
+    /// The columns of the block, and its first row.
     columns: [usize; 2],
-    number: isize,
     first: isize,
-}
-
-impl Row {
-    /// Which of two scratch rows holds this row; the other one holds the row below.
-    #[inline(always)]
-    fn parity(self) -> usize {
-        (self.number - self.first + 2) as usize % 2
-    }
-    /// Which of three scratch rows holds row `number`, at most one away.
-    #[inline(always)]
-    fn third(self, number: isize) -> usize {
-        (number - self.first + 3) as usize % 3
-    }
+    /// The rows of the tiles that are under way, half open.
+    tiles: [usize; 2],
+    /// The rows whose face states are found, half open.
+    numbers: [isize; 2],
 }
 
 impl<const D: usize, const UNIFORM: bool, L: SimdVector, T: Scheme<D, L>> Strip<'_, D, UNIFORM, L, T> {
+    /// In one dimension a row has all it needs; in two the face states of the one above are found before it is updated.
+    const AHEAD: isize = if D > 1 { 1 } else { 0 };
+
     /// Compute the tiles from the lowest row to the highest.
     ///
-    /// What runs on lanes is called in pieces of a row, each a function of its own: one for all rows would take the compiler twice as
-    /// long.
+    /// What runs on lanes is called in three passes, each a function of its own: one for all would take the compiler twice as long. A
+    /// pass takes several rows, or fetching what they share would be felt where rows are short.
     pub(super) fn sweep<'t>(
         &self,
         context: impl SimdContext,
@@ -45,50 +39,40 @@ impl<const D: usize, const UNIFORM: bool, L: SimdVector, T: Scheme<D, L>> Strip<
     ) {
         let (Some(lowest), Some(highest)) = (tiles.clone().next(), tiles.clone().last()) else { return };
         let columns = [lowest.columns[0], highest.columns[1]];
-        let (first, end) = (lowest.rows[0] as isize, highest.rows[1] as isize);
+        let first = lowest.rows[0] as isize;
         self.mark_strip(columns, scratch);
         for stats in &mut *found {
             stats.outflow = TileStats::NONE.outflow;
         }
         let tracked = changes.len() / found.len();
+        let at_once = scratch.fit(Self::end(columns)) as isize;
         // The row of tiles that is under way, and where in `found` it begins.
         let (mut tile_row, mut from) = (tiles.clone(), 0);
-        // In one dimension a row has all it needs; in two the one above comes first.
-        let ahead = if D > 1 { 1 } else { 0 };
-        for number in first - ahead..end + ahead {
-            let (row, j) = (Row { columns, number, first }, number - ahead);
+        let mut next = first - Self::AHEAD;
+        while let Some(&Tile { rows: [bottom, top], .. }) = tile_row.clone().next() {
+            let end = (next + at_once).min(top as isize + Self::AHEAD);
+            let batch = Batch { columns, first, tiles: [bottom, top], numbers: [next, end] };
             context.call(
                 #[inline(always)]
-                || self.find_face_states(row, scratch.reborrow()),
+                || self.find_face_states(batch, scratch.reborrow()),
             );
-            if number < first {
-                continue;
-            }
             context.call(
                 #[inline(always)]
-                || self.find_fluxes_along_x(row, scratch.reborrow()),
+                || self.find_fluxes_along_x(batch, scratch.reborrow()),
+            );
+            context.call(
+                #[inline(always)]
+                || self.update_rows(batch, scratch.reborrow(), reducer),
             );
             let leave = tile_row.clone().take(across).zip(&mut found[from..]);
+            let updated = [next, end].map(|number| number - Self::AHEAD);
             for (tile, found) in leave.filter(|(tile, _)| !tile.outlets.is_empty()) {
                 context.call(
                     #[inline(always)]
-                    || self.add_outflow(&mut found.outflow, tile, columns, j, scratch, false),
+                    || self.add_outflow(&mut found.outflow, tile, columns, updated, scratch),
                 );
             }
-            context.call(
-                #[inline(always)]
-                || self.update_row(row, scratch.reborrow(), reducer),
-            );
-            let leave = tile_row.clone().take(across).zip(&mut found[from..]);
-            for (tile, found) in leave.filter(|(tile, _)| !tile.outlets.is_empty()) {
-                context.call(
-                    #[inline(always)]
-                    || self.add_outflow(&mut found.outflow, tile, columns, j, scratch, true),
-                );
-            }
-            let Some(&Tile { rows: [bottom, top], .. }) = tile_row.clone().next() else { continue };
-            reducer.pass((j + 1 - bottom as isize).max(0) as usize, top - bottom, self.reach);
-            if j + 1 == top as isize {
+            if end == top as isize + Self::AHEAD {
                 for (tile, k) in tile_row.clone().take(across).zip(from..) {
                     let [start, end] = tile.columns.map(|i| i - columns[0] + 1);
                     let changes = &mut changes[k * tracked..(k + 1) * tracked];
@@ -98,6 +82,7 @@ impl<const D: usize, const UNIFORM: bool, L: SimdVector, T: Scheme<D, L>> Strip<
                 tile_row.by_ref().take(across).for_each(drop);
                 from += across;
             }
+            next = end;
         }
     }
 
@@ -110,46 +95,47 @@ impl<const D: usize, const UNIFORM: bool, L: SimdVector, T: Scheme<D, L>> Strip<
         }
     }
 
-    /// Find the face states of row `number`.
+    /// Find the face states of some rows.
     #[inline(always)]
-    fn find_face_states(self, row: Row, mut scratch: Scratch<D, L, T>) {
-        if T::Forecast::COUNT > 0 {
-            self.find_forecasts(row, &mut scratch.forecasts);
-        }
-        let Scratch { forecasts, face_states, .. } = &mut scratch;
-        let above = &mut face_states[row.parity()];
-        let place = self.start(row.columns, row.number);
-        // One vector ahead: its roots and divisions are under way while this one's sums are formed.
-        let mut primitives = self.scheme.primitives(&self.cell(place));
-        for m in Self::vectors(row.columns) {
-            self.prefetch_rows(place + m);
-            let next = self.scheme.primitives(&self.cell(place + m + L::WIDTH));
-            let stencil = Around { strip: &self, place: place + m };
-            // SAFETY: a vector of the row.
-            unsafe {
-                let forecasts = Self::forecasts(forecasts, row, m as isize);
-                above.put(m as isize, self.scheme.reconstruct(&stencil, &primitives, &forecasts, self.dt));
+    fn find_face_states(self, batch: Batch, mut scratch: Scratch<D, L, T>) {
+        for number in batch.numbers[0]..batch.numbers[1] {
+            if T::Forecast::COUNT > 0 {
+                self.find_forecasts(batch, number, &mut scratch);
             }
-            primitives = next;
-        }
-        if row.number <= row.first {
-            above.fill_halo(Self::end(row.columns));
+            let [below, here, above] =
+                [-1, 0, 1].map(|up| scratch.forecasts.row(if D > 1 { number + up } else { number }));
+            let mut face_states = scratch.face_states.row_mut(number);
+            let place = self.start(batch.columns, number);
+            // One vector ahead: its roots and divisions are under way while this one's sums are formed.
+            let mut primitives = self.scheme.primitives(&self.cell(place));
+            for m in Self::vectors(batch.columns) {
+                self.prefetch_rows(place + m);
+                let next = self.scheme.primitives(&self.cell(place + m + L::WIDTH));
+                let stencil = Around { strip: &self, place: place + m };
+                // SAFETY: a vector of the row.
+                unsafe {
+                    let forecasts = Self::forecasts([&below, &here, &above], m as isize);
+                    face_states
+                        .put(m as isize, self.scheme.reconstruct(&stencil, &primitives, &forecasts, self.dt));
+                }
+                primitives = next;
+            }
         }
     }
 
     /// Forecast the row above `number` (in one dimension the row itself), before the first row also that and the one below.
     #[inline(always)]
-    fn find_forecasts(&self, row: Row, rows: &mut [ScratchRow<L, T::Forecast>; 3]) {
+    fn find_forecasts(&self, batch: Batch, number: isize, scratch: &mut Scratch<D, L, T>) {
         let [from, to] = match D {
-            1 => [row.number; 2],
-            _ if row.number < row.first => [row.number - 1, row.number + 1],
-            _ => [row.number + 1; 2],
+            1 => [number; 2],
+            _ if number < batch.first => [number - 1, number + 1],
+            _ => [number + 1; 2],
         };
         for number in from..=to {
-            let place = self.start(row.columns, number);
-            let here = &mut rows[row.third(number)];
+            let place = self.start(batch.columns, number);
+            let mut here = scratch.forecasts.row_mut(number);
             // From the cell before the first to the one behind the last.
-            for m in (0..Self::end(row.columns) + 2).step_by(L::WIDTH) {
+            for m in (0..Self::end(batch.columns) + 2).step_by(L::WIDTH) {
                 let stencil = Around { strip: self, place: place + m - 1 };
                 // SAFETY: it begins before the first cell or at one of the row.
                 unsafe { here.put(m as isize - 1, self.scheme.forecast(&stencil, self.dt)) };
@@ -157,88 +143,102 @@ impl<const D: usize, const UNIFORM: bool, L: SimdVector, T: Scheme<D, L>> Strip<
         }
     }
 
-    /// The forecasts around the cells from `at` on.
+    /// The forecasts around the cells from `at` on of the middle one of three rows.
     ///
     /// # Safety
     /// A vector of the row.
     #[inline(always)]
     unsafe fn forecasts(
-        rows: &[ScratchRow<L, T::Forecast>; 3],
-        row: Row,
+        [below, here, above]: [&Row<L, T::Forecast, 4>; 3],
         at: isize,
     ) -> Forecasts<D, T::Forecast> {
-        let here = &rows[row.third(row.number)];
         // SAFETY: as the caller promises.
         unsafe {
             let (mut lo, mut hi) = (repeated(here.get(at - 1)), repeated(here.get(at + 1)));
             if D > 1 {
-                lo[D - 1] = rows[row.third(row.number - 1)].get(at);
-                hi[D - 1] = rows[row.third(row.number + 1)].get(at);
+                lo[D - 1] = below.get(at);
+                hi[D - 1] = above.get(at);
             }
             Forecasts { here: here.get(at), lo, hi }
         }
     }
 
-    /// Find the fluxes along x of the row below `number` (in one dimension of the row itself), and the values at its upper
+    /// Find the fluxes along x of the rows below (in one dimension of the rows themselves), and the values at their upper
     /// corners.
     #[inline(always)]
-    fn find_fluxes_along_x(self, row: Row, mut scratch: Scratch<D, L, T>) {
-        let Scratch { face_states, across, corners, .. } = &mut scratch;
-        let end = Self::end(row.columns);
-        if row.number <= row.first {
-            across.fill_halo(end);
-        }
-        let above = &face_states[row.parity()];
-        let here = if D > 1 { &face_states[1 - row.parity()] } else { above };
-        let updates = D == 1 || row.number > row.first;
-        let high = &mut corners[row.parity()];
-        for m in Self::vectors(row.columns) {
-            let at = m as isize;
-            // SAFETY: a vector of the row.
-            unsafe {
-                let (left, right) = (here.get(at - 1), here.get(at));
-                if updates {
-                    across.put(at, self.scheme.flux(0, &left, &right, self.lambda(0)));
-                }
-                if T::Corner::COUNT > 0 {
-                    let (below, above) = (above.get(at - 1), above.get(at));
-                    high.put(at, self.scheme.corner([[&left, &right], [&below, &above]]));
+    fn find_fluxes_along_x(self, batch: Batch, mut scratch: Scratch<D, L, T>) {
+        for number in batch.numbers[0].max(batch.first)..batch.numbers[1] {
+            let above = scratch.face_states.row(number);
+            let here = scratch.face_states.row(number - Self::AHEAD);
+            let updates = D == 1 || number > batch.first;
+            let mut along_x = scratch.along_x.row_mut(number - Self::AHEAD);
+            let mut corners = scratch.corners.row_mut(number);
+            for m in Self::vectors(batch.columns) {
+                let at = m as isize;
+                // SAFETY: a vector of the row.
+                unsafe {
+                    let (left, right) = (here.get(at - 1), here.get(at));
+                    if updates {
+                        along_x.put(at, self.scheme.flux(0, &left, &right, self.lambda(0)));
+                    }
+                    if T::Corner::COUNT > 0 {
+                        let (below, above) = (above.get(at - 1), above.get(at));
+                        corners.put(at, self.scheme.corner([[&left, &right], [&below, &above]]));
+                    }
                 }
             }
         }
-        high.fill_halo(end);
+    }
+
+    /// Find the fluxes along y between some rows and the ones below, and update these (in one dimension the rows themselves).
+    #[inline(always)]
+    fn update_rows(self, batch: Batch, mut scratch: Scratch<D, L, T>, reducer: &mut TileReducer) {
+        let [bottom, top] = batch.tiles;
+        for number in batch.numbers[0].max(batch.first)..batch.numbers[1] {
+            self.update_row(batch, number, &mut scratch, reducer);
+            let done = number - Self::AHEAD + 1 - bottom as isize;
+            reducer.pass(done.max(0) as usize, top - bottom, self.reach);
+        }
     }
 
     /// Find the fluxes along y between row `number` and the one below, and update that (in one dimension the row itself).
     #[inline(always)]
-    fn update_row(self, row: Row, mut scratch: Scratch<D, L, T>, reducer: &mut TileReducer) {
-        let Scratch { face_states, across, below, corners, updated, in_strip, .. } = &mut scratch;
-        let (Row { columns, number, first }, parity) = (row, row.parity());
-        let above = &face_states[parity];
-        let here = if D > 1 { &face_states[1 - parity] } else { above };
-        let high = &corners[parity];
-        let low = if D > 1 { &corners[1 - parity] } else { high };
-        let updates = D == 1 || number > first;
-        let place = self.start(columns, if D > 1 { number - 1 } else { number });
+    fn update_row(
+        &self,
+        batch: Batch,
+        number: isize,
+        scratch: &mut Scratch<D, L, T>,
+        reducer: &mut TileReducer,
+    ) {
+        let columns = batch.columns;
+        let above = scratch.face_states.row(number);
+        let here = scratch.face_states.row(number - Self::AHEAD);
+        let along_x = scratch.along_x.row(number - Self::AHEAD);
+        let (lower, mut upper) = scratch.along_y.with_next(number - 1);
+        let high = scratch.corners.row(number);
+        let low = scratch.corners.row(number - Self::AHEAD);
+        let mut updated = scratch.updated.row_mut(0);
+        let updates = D == 1 || number > batch.first;
+        let place = self.start(columns, number - Self::AHEAD);
         // The cells of the vector before that have a new state.
         let mut before = L::from_bits(0);
         for m in Self::vectors(columns) {
             let at = m as isize;
-            // SAFETY: a vector of the row; a strip has at most STRIP cells. (In the first row of a block `below` and `across` hold
+            // SAFETY: a vector of the row; a strip has at most STRIP cells. (Before the first row of a block `along_y` holds
             // numbers of other strips, and what is made of them is not used.)
             unsafe {
                 let states = here.get(at);
-                let mut faces: [_; D] = repeated(Faces { lo: across.get(at), hi: across.get(at + 1) });
+                let mut faces: [_; D] = repeated(Faces { lo: along_x.get(at), hi: along_x.get(at + 1) });
                 if D > 1 {
                     let up = self.scheme.flux(D - 1, &states, &above.get(at), self.lambda(D - 1));
-                    faces[D - 1] = Faces { lo: below.get(at), hi: up };
-                    below.put(at, up);
+                    faces[D - 1] = Faces { lo: lower.get(at), hi: up };
+                    upper.put(at, up);
                 }
                 if updates {
                     if m > 0 {
-                        self.diagnostics(m - L::WIDTH, place, updated, before, reducer);
+                        self.diagnostics(m - L::WIDTH, place, &updated, before, reducer);
                     }
-                    let mut mask = L::from_bits(u64::from(*in_strip.get_unchecked(m / L::WIDTH)));
+                    let mut mask = L::from_bits(u64::from(*scratch.in_strip.get_unchecked(m / L::WIDTH)));
                     if !UNIFORM {
                         mask = mask & !self.scheme.is_nodata(&self.ground(place + m));
                     }
@@ -253,7 +253,7 @@ impl<const D: usize, const UNIFORM: bool, L: SimdVector, T: Scheme<D, L>> Strip<
         }
         if updates {
             // SAFETY: the last vector of the row.
-            unsafe { self.diagnostics(Self::end(columns) - L::WIDTH, place, updated, before, reducer) };
+            unsafe { self.diagnostics(Self::end(columns) - L::WIDTH, place, &updated, before, reducer) };
         }
     }
 }

@@ -78,7 +78,7 @@ impl<const D: usize, const UNIFORM: bool, L: SimdVector, T: Scheme<D, L>> Strip<
         &self,
         m: usize,
         start: usize,
-        updated: &Row<L, T::State>,
+        updated: &Row<L, T::State, 1>,
         mask: L::Mask,
         reducer: &mut TileReducer,
     ) {
