@@ -1,4 +1,4 @@
-//! The rows that a strip is computed from, small enough for the first-level cache.
+//! The rows that a strip is computed from, small enough for the near caches.
 
 use super::reducer::TileReducer;
 use crate::lanes::{MAX_LANES, SimdVector};

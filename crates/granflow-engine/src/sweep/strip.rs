@@ -1,4 +1,4 @@
-//! The inner loop: a block of tiles, row by row, vector by vector.
+//! The inner loop: a block of tiles, some rows at a time, vector by vector.
 //!
 //! ```text
 //!              a block: tiles that are awake side by side and above each other, 126 columns at most
@@ -11,8 +11,8 @@
 //!              g +-----------+-----------+-----------+ g
 //!      number  g | ========= | ========= | ========= | g  <- face states of this row are found;
 //!     number-1 g | ========= | ========= | ========= | g  <- this one is updated from them and from its own: the strip,
-//!              g |           |           |           | g     g included, STRIP cells at most; of the rows below no
-//!     first -- g +-----------+-----------+-----------+ g     face state is kept
+//!              g |           |           |           | g     g included, STRIP cells at most; each pass does this
+//!     first -- g +-----------+-----------+-----------+ g     for some rows
 //!              g   g   g   g   g   g   g   g   g   g   g  <- the ghost row below: where the grid ends boundary::fill set it,
 //!                                                            elsewhere it is a row of the tiles below
 //!
