@@ -56,8 +56,8 @@ pub(crate) struct OutletFace {
     pub outlet: u8,
 }
 
-/// What a sweep found in one tile.
-#[derive(Clone, Copy, Debug)]
+/// What a sweep found in one tile; by default of no cell.
+#[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct TileStats {
     /// Largest sum of signal speeds over dx \[1/time\]; infinite where a state is no number.
     pub rate: f64,
@@ -69,24 +69,8 @@ pub(crate) struct TileStats {
     pub activity: Activity,
 }
 
-impl Default for TileStats {
-    fn default() -> Self {
-        Self::NONE
-    }
-}
-
-impl TileStats {
-    /// Of no cell.
-    pub const NONE: TileStats = TileStats {
-        rate: 0.0,
-        speed: 0.0,
-        outflow: [0.0; OUTLETS.len()],
-        activity: Activity { anywhere: false, near: [[false; 2]; 2] },
-    };
-}
-
 /// Where in a tile a cell changed, or may yet.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(crate) struct Activity {
     /// In any of its cells.
     pub anywhere: bool,

@@ -252,7 +252,7 @@ impl<const D: usize> Physics<D> for Flood {
         let discharge = |cell: &CellOf<D, SaintVenant>| cell.state.q[0];
         vec![
             Field { name: "depth", value: Value::Component(0), short: 0 },
-            Field { name: "discharge_x", value: Value::Of(discharge), short: 0 },
+            Field { name: "discharge_x", value: Value::of(discharge), short: 0 },
         ]
     }
 }

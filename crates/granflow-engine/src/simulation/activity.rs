@@ -21,7 +21,7 @@ impl<const D: usize, S: Scheme<D, f64>> Simulation<D, S> {
     /// thread, as long as there is enough for all of them. Costs nothing for tiles that sleep.
     pub(super) fn wake(&mut self) {
         for &number in &self.awake {
-            self.stats[number as usize].outflow = TileStats::NONE.outflow;
+            self.stats[number as usize].outflow = TileStats::default().outflow;
         }
         self.find_frontier();
         let across = self.across;

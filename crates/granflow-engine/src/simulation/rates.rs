@@ -34,7 +34,7 @@ impl<const D: usize, S: Scheme<D, f64>> Simulation<D, S> {
 
     /// The rate and the speed of a tile as it stands.
     pub(super) fn scanned_tile(&self, number: usize) -> TileStats {
-        let (mut stats, mut square) = (TileStats::NONE, 0.0);
+        let (mut stats, mut square) = (TileStats::default(), 0.0);
         self.visit(&self.tiles[number], |cell| {
             let rate = self.scheme.rate(cell, &self.spacing);
             stats.rate = if stats.rate < rate { rate } else { stats.rate };

@@ -151,7 +151,7 @@ impl<const D: usize, S: Scheme<D, f64>> Simulation<D, S> {
         Ok(Simulation {
             spacing: Spacing::new(grid.size),
             next: now.clone(),
-            stats: vec![TileStats::NONE; tiles.len()],
+            stats: vec![TileStats::default(); tiles.len()],
             changes: vec![f64::INFINITY; tiles.len() * tracked],
             found_changes: vec![0.0; tiles.len() * tracked],
             row_changes: vec![f64::INFINITY; tiles.len() / across * tracked],
@@ -168,7 +168,7 @@ impl<const D: usize, S: Scheme<D, f64>> Simulation<D, S> {
             blocks: Vec::with_capacity(tiles.len()),
             frontier: Vec::with_capacity(tiles.len()),
             queued: vec![false; tiles.len()],
-            found: vec![TileStats::NONE; tiles.len()],
+            found: vec![TileStats::default(); tiles.len()],
             grounds,
             forcings,
             maps: None,

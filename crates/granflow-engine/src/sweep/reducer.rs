@@ -154,6 +154,6 @@ impl TileReducer<'_> {
             *kept &= !bits;
         }
         let rate = self.take(RATE, columns.clone());
-        TileStats { rate, speed: self.take(SPEED_SQUARED, columns).sqrt(), activity, ..TileStats::NONE }
+        TileStats { rate, speed: self.take(SPEED_SQUARED, columns).sqrt(), activity, ..TileStats::default() }
     }
 }

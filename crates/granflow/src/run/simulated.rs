@@ -89,14 +89,14 @@ impl<const D: usize, P: Physics<D>> Simulated<D, P> {
 
     fn value(&self, field: &Field<D, P::Scheme>, from: usize, values: &mut [f64]) {
         let [_, columns] = self.shape(field);
-        match field.value {
+        match &field.value {
             Value::Component(k) => {
-                let part = &self.simulation.arrays().components()[k];
+                let part = &self.simulation.arrays().components()[*k];
                 self.simulation.layout().by_rows(columns, from, values, |place, row| {
                     row.copy_from_slice(&part[place..][..row.len()]);
                 });
             }
-            Value::Of(value) => self.simulation.fill(columns, from, values, value),
+            Value::Of(fill) => fill(&self.simulation, columns, from, values),
         }
     }
 }

@@ -42,7 +42,7 @@ impl<const D: usize, const UNIFORM: bool, L: SimdVector, T: Scheme<D, L>> Strip<
         let first = lowest.rows[0] as isize;
         self.mark_strip(columns, scratch);
         for stats in &mut *found {
-            stats.outflow = TileStats::NONE.outflow;
+            stats.outflow = Default::default();
         }
         let tracked = changes.len() / found.len();
         let at_once = scratch.fit(Self::end(columns)) as isize;

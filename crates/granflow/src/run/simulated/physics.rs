@@ -9,12 +9,24 @@ use std::borrow::Cow;
 pub type CellOf<const D: usize, S> =
     Cell<<S as Scheme<D, f64>>::State, <S as Scheme<D, f64>>::Ground, <S as Scheme<D, f64>>::Forcing>;
 
+/// [`Simulation::fill`] with a function of the cell.
+type Fill<const D: usize, S> = dyn Fn(&Simulation<D, S>, usize, usize, &mut [f64]) + Send + Sync;
+
 /// Where the numbers of a field come from.
 pub enum Value<const D: usize, S: Scheme<D, f64>> {
     /// A component of the state.
     Component(usize),
-    /// A function of the cell.
-    Of(fn(&CellOf<D, S>) -> f64),
+    /// A function of the cell: [`Value::of`].
+    Of(Box<Fill<D, S>>),
+}
+
+impl<const D: usize, S: Scheme<D, f64>> Value<D, S> {
+    /// A function of the cell, compiled into a loop of its own: a frame asks for it in every cell.
+    pub fn of(value: impl Fn(&CellOf<D, S>) -> f64 + Send + Sync + 'static) -> Self {
+        Value::Of(Box::new(move |simulation, columns, from, values| {
+            simulation.fill(columns, from, values, &value);
+        }))
+    }
 }
 
 /// A field that a run shows, in the order of the frames.

@@ -67,19 +67,22 @@ where
         self.name
     }
     fn fields(&self) -> Vec<Field<D, S>> {
-        let field = |name, value: fn(&CellOf<D, S>) -> f64| Field { name, value: Value::Of(value), short: 0 };
+        let field = |name, value: Value<D, S>| Field { name, value, short: 0 };
         // On a chute the thickness is the first unknown itself.
-        let own = Field { name: "thickness", value: Value::Component(0), short: 0 };
-        let mut fields = vec![if self.on_terrain { field("thickness", thickness::<D, S>) } else { own }];
-        fields.push(field("velocity_x", |cell| cell.state.velocity()[0]));
+        let own = Value::Component(0);
+        let mut fields =
+            vec![field("thickness", if self.on_terrain { Value::of(thickness::<D, S>) } else { own })];
+        fields.push(field("velocity_x", Value::<D, S>::of(|cell| cell.state.velocity()[0])));
         if D > 1 {
-            fields.push(field("velocity_y", |cell| cell.state.velocity()[D - 1]));
+            fields.push(field("velocity_y", Value::<D, S>::of(|cell| cell.state.velocity()[D - 1])));
         }
         if self.on_terrain {
-            fields.push(field("surface", |cell| {
+            let surface = |cell: &CellOf<D, S>| {
                 cell.ground.elevation() + cell.ground.thickness(1.0) * thickness::<D, S>(cell)
-            }));
-            fields.push(field("speed", |cell| cell.ground.square(cell.state.velocity()).sqrt()));
+            };
+            fields.push(field("surface", Value::of(surface)));
+            let speed = |cell: &CellOf<D, S>| cell.ground.square(cell.state.velocity()).sqrt();
+            fields.push(field("speed", Value::of(speed)));
         }
         fields
     }
