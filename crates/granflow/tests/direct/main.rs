@@ -131,6 +131,38 @@ fn without_a_way_out_there_is_no_equilibrium() {
 }
 
 #[test]
+fn whatever_edges_are_open_all_leaves_or_it_is_said_why() {
+    let closed = Table::masked([3, 2], |cell| cell != [0, 0], |_| true);
+    let edges: Vec<Edge<2>> = closed.edges().map(|(edge, _)| edge).collect();
+    let (mut found, mut trapped) = (0, 0);
+    for open in 0..1 << edges.len() {
+        let wall = |edge: &Edge<2>| {
+            // Beside a cell that no sand stays on there are others, open ones.
+            let number = edges.iter().position(|one| one.middle() == edge.middle());
+            number.is_some_and(|number| open & (1 << number) == 0)
+        };
+        let setup = Setup::new("corner", Table::masked([3, 2], |cell| cell != [0, 0], wall), [0.1; 2]);
+        match equilibrium(&setup.table, setup.size, &setup.bed, &setup.source) {
+            Ok(state) => {
+                let out: f64 = state.outflow.iter().map(|(_, flux)| flux).sum();
+                let poured = F * setup.table.area(setup.size);
+                assert!((out - poured).abs() <= 1e-12 * poured, "{open:b}: {out} of {poured}");
+                found += 1;
+            }
+            Err(why @ Unsteady::Trapped { .. }) => {
+                assert!(why.to_string().contains("one cell wide"), "{why}");
+                trapped += 1;
+            }
+            Err(why) => assert!(open == 0 && matches!(why, Unsteady::Enclosed { .. }), "{open:b}: {why}"),
+        }
+    }
+    assert!(
+        found > trapped && trapped > 0,
+        "{found} tables with an equilibrium, {trapped} with a level cell"
+    );
+}
+
+#[test]
 #[ignore = "prints the time that a million cells take"]
 fn a_million_cells() {
     for setup in [square(1000), disc(1000), corner(1000, on_the_left)] {
