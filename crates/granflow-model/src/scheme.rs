@@ -295,10 +295,11 @@ pub trait Scheme<const D: usize, R: Real>: Copy + Send + Sync {
         forecasts: &Forecasts<D, Self::Forecast>,
         dt: R,
     ) -> Self::FaceStates;
-    /// What passes the face between `left` and `right` along `axis`; `lambda` is dt/dx along it.
+    /// What passes the face between `left` and `right` along `axis`; `lambda` is dt/dx along it. Beside a block of cells it is asked
+    /// about numbers that are of no cell, or were another scheme's; what comes of them is thrown away, so it must only not panic.
     fn flux(&self, axis: usize, left: &Self::FaceStates, right: &Self::FaceStates, lambda: R) -> Self::Flux;
     /// What is found at a corner: `around[y][x]` are the cells below and above it, left and right of it; in one dimension
-    /// the corner is the face, and both rows are the same.
+    /// the corner is the face, and both rows are the same. Of numbers of no cell the same is true as for [`Scheme::flux`].
     fn corner(&self, around: [[&Self::FaceStates; 2]; 2]) -> Self::Corner;
     /// The state after `dt` of the cell in the middle of the stencil; `corners[y][x]` are the cell's lower and upper ones,
     /// left and right.

@@ -11,7 +11,7 @@ use granflow::kernels::Kernel;
 use granflow::savage_hutter::Flow;
 use granflow::savage_hutter::balanced::Balanced;
 use granflow::savage_hutter::energy_stable::EnergyStable;
-use granflow::savage_hutter::friction::{AnyLaw, Coulomb, Law, SamosAt, Voellmy};
+use granflow::savage_hutter::friction::{AnyLaw, Cohesion, Coulomb, Law, SamosAt, Voellmy};
 use granflow::savage_hutter::kinetic::{VERFAHREN_1, VERFAHREN_2, VERFAHREN_3, VERFAHREN_4, VERFAHREN_5};
 use granflow::scheme::{Boundary, Components};
 use granflow::simulation::{SimdLevel, Simulation, StepSize};
@@ -152,13 +152,12 @@ fn same<const D: usize, S: Kernel<D>, T: Kernel<D>>(
     }
 }
 
-/// With a film so thick that many cells are dry and no thinner than their neighbours.
-fn on_terrain(name: &str, friction: Law, film: f64) {
+/// On waves of these wave numbers \[1/m\] along x and y.
+fn on_terrain(name: &str, friction: Law, film: f64, [a, b]: [f64; 2]) {
     let sheet: Grid<2> = grid([101, 43], [0.0; 2], 5.0, Boundary::Absorbing);
     let grounds = terrain(&sheet, |[x, y]| {
         let outside = (x - 300.0).hypot(y - 90.0) < 22.0 || x + y < 60.0;
         (!outside).then(|| {
-            let (a, b) = (0.02, 0.03);
             let (s, c) = ((a * x).sin(), (b * y).cos());
             Surface {
                 z: 30.0 * s * c - 0.3 * x,
@@ -196,11 +195,15 @@ fn on_terrain(name: &str, friction: Law, film: f64) {
 
 #[test]
 fn lanes_are_the_scalar_on_terrain() {
+    let (hills, ridges) = ([0.02, 0.03], [0.1, 0.15]);
+    // With the thicker film many cells are dry and no thinner than their neighbours.
     for film in [1e-6, 0.7] {
-        on_terrain("coulomb", Law::Coulomb(Coulomb { mu: 0.4 }), film);
-        on_terrain("voellmy", Law::Voellmy(Voellmy { mu: 0.2, xi: 1500.0, gravity: 9.81 }), film);
+        on_terrain("coulomb", Law::Coulomb(Coulomb { mu: 0.4 }), film, hills);
+        on_terrain("voellmy", Law::Voellmy(Voellmy { mu: 0.2, xi: 1500.0, gravity: 9.81 }), film, hills);
         let samos = SamosAt { mu: 0.155, bond: 0.1, rs0: 0.222, kappa: 0.43, r: 0.05, b: 4.13 };
-        on_terrain("samosat", Law::SamosAt(samos), film);
+        on_terrain("samosat", Law::SamosAt(samos), film, hills);
+        // Cells are held between moving ones, in planes far from each other.
+        on_terrain("cohesion", Law::Cohesion(Cohesion { mu: 0.3, bond: 20.0 }), film, ridges);
     }
 }
 

@@ -1,4 +1,4 @@
-//! The rows that a strip is computed from, small enough for the near caches.
+//! The rows that a strip is computed from, small enough for the second-level cache.
 
 use super::reducer::TileReducer;
 use crate::lanes::{MAX_LANES, SimdVector};
@@ -11,6 +11,7 @@ use std::marker::PhantomData;
 const PADDING: usize = MAX_LANES;
 /// Rows of full length that are computed at a time; of shorter ones as many as fit into their place, a power of two.
 const ROWS: usize = 4;
+const _: () = assert!(ROWS >= 3, "of forecasts, which are found row by row, three rows are needed");
 
 /// Numbers in a line of the cache.
 const LINE: usize = 8;
@@ -188,7 +189,7 @@ impl<L: SimdVector, P: Components<L>, const KEPT: usize> RowMut<'_, L, P, KEPT> 
 /// The rows of a strip.
 pub(super) struct Scratch<'a, const D: usize, L: SimdVector, T: Scheme<D, L>> {
     /// Forecasts: of the rows whose face states are found, and of the ones below and above.
-    pub forecasts: Rows<'a, L, T::Forecast, 4>,
+    pub forecasts: Rows<'a, L, T::Forecast, 1>,
     /// Face states: of the rows that are updated and the one above.
     pub face_states: Rows<'a, L, T::FaceStates, 2>,
     /// Through the lower faces along x of the rows that are updated.
@@ -231,7 +232,7 @@ impl<'a, const D: usize, L: SimdVector, T: Scheme<D, L>> Scratch<'a, D, L, T> {
     }
 
     /// How many numbers its rows have.
-    const NUMBERS: usize = Rows::<L, T::Forecast, 4>::NUMBERS
+    const NUMBERS: usize = Rows::<L, T::Forecast, 1>::NUMBERS
         + Rows::<L, T::FaceStates, 2>::NUMBERS
         + Rows::<L, T::Flux, 1>::NUMBERS
         + Rows::<L, T::Flux, 2>::NUMBERS
@@ -243,7 +244,7 @@ impl<'a, const D: usize, L: SimdVector, T: Scheme<D, L>> Scratch<'a, D, L, T> {
     unsafe fn at(start: *mut f64, in_strip: &'a mut [u16; STRIP]) -> Self {
         // SAFETY: those of one kind begin where those of the one before end.
         unsafe {
-            let face_states = start.add(Rows::<L, T::Forecast, 4>::NUMBERS);
+            let face_states = start.add(Rows::<L, T::Forecast, 1>::NUMBERS);
             let along_x = face_states.add(Rows::<L, T::FaceStates, 2>::NUMBERS);
             let along_y = along_x.add(Rows::<L, T::Flux, 1>::NUMBERS);
             let corners = along_y.add(Rows::<L, T::Flux, 2>::NUMBERS);

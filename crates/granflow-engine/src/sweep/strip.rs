@@ -11,8 +11,8 @@
 //!              g +-----------+-----------+-----------+ g
 //!      number  g | ========= | ========= | ========= | g  <- face states of this row are found;
 //!     number-1 g | ========= | ========= | ========= | g  <- this one is updated from them and from its own: the strip,
-//!              g |           |           |           | g     g included, STRIP cells at most; each pass does this
-//!     first -- g +-----------+-----------+-----------+ g     for some rows
+//!              g |           |           |           | g     g included, STRIP cells at most; each of three passes
+//!     first -- g +-----------+-----------+-----------+ g     does its part of this for some rows
 //!              g   g   g   g   g   g   g   g   g   g   g  <- the ghost row below: where the grid ends boundary::fill set it,
 //!                                                            elsewhere it is a row of the tiles below
 //!

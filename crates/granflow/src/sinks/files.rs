@@ -84,7 +84,6 @@ pub enum BeginError {
 
 /// Writes a run into a folder.
 pub struct Files {
-    folder: Folder,
     plan: RunPlan,
     origin: Origin,
     /// The commands before this one, and where the run went on with another case.
@@ -93,6 +92,8 @@ pub struct Files {
     at_end: bool,
     command: String,
     writer: Writer,
+    /// Behind the writer: its lock goes when all is written.
+    folder: Folder,
     schedule: Schedule,
     series: Series,
     /// Times of the last frame and of the last ledger line.

@@ -149,7 +149,7 @@ impl<const D: usize, const UNIFORM: bool, L: SimdVector, T: Scheme<D, L>> Strip<
     /// A vector of the row.
     #[inline(always)]
     unsafe fn forecasts(
-        [below, here, above]: [&Row<L, T::Forecast, 4>; 3],
+        [below, here, above]: [&Row<L, T::Forecast, 1>; 3],
         at: isize,
     ) -> Forecasts<D, T::Forecast> {
         // SAFETY: as the caller promises.
@@ -225,7 +225,8 @@ impl<const D: usize, const UNIFORM: bool, L: SimdVector, T: Scheme<D, L>> Strip<
         for m in Self::vectors(columns) {
             let at = m as isize;
             // SAFETY: a vector of the row; a strip has at most STRIP cells. (Before the first row of a block `along_y` holds
-            // numbers of other strips, and what is made of them is not used.)
+            // numbers of other strips, as face states do before the first cell, and fluxes and corners behind the last vector; what is
+            // made of them is not used.)
             unsafe {
                 let states = here.get(at);
                 let mut faces: [_; D] = repeated(Faces { lo: along_x.get(at), hi: along_x.get(at + 1) });

@@ -14,6 +14,9 @@ pub trait CellSlopes<const D: usize, R: Real>: Components<R> {
     fn depth(&self, towards: Towards, h: R) -> R;
     /// Velocity at one end.
     fn velocity(&self, towards: Towards, u: [R; D]) -> [R; D];
+    /// Not at all but in the cells of a mask.
+    #[must_use]
+    fn only(self, mask: R::Mask) -> Self;
 }
 
 impl<const D: usize, R: Real> CellSlopes<D, R> for () {
@@ -29,6 +32,8 @@ impl<const D: usize, R: Real> CellSlopes<D, R> for () {
     fn velocity(&self, _towards: Towards, u: [R; D]) -> [R; D] {
         u
     }
+    #[inline(always)]
+    fn only(self, _mask: R::Mask) {}
 }
 
 /// Half of the limited differences across a cell, along one axis.
@@ -63,6 +68,11 @@ impl<const D: usize, R: Real> CellSlopes<D, R> for Slope<D, R> {
             Towards::Lo => u[k] - self.u[k],
             Towards::Hi => u[k] + self.u[k],
         })
+    }
+    #[inline(always)]
+    fn only(self, mask: R::Mask) -> Self {
+        let only = |value| R::select(mask, value, R::zero());
+        Slope { h: only(self.h), u: per_axis!(k => only(self.u[k])) }
     }
 }
 

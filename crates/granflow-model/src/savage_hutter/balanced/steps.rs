@@ -114,6 +114,7 @@ where
         }
         if R::any(closed) {
             for_axis!(axis in D => {
+                face_states.slopes[axis] = face_states.slopes[axis].only(!closed);
                 face_states.half[axis] = per_axis!(side => face_states.half[axis][side].only(!closed));
             });
         }
