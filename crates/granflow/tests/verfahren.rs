@@ -15,7 +15,7 @@ use granflow::savage_hutter::kinetic::{
 use granflow::scheme::Boundary;
 use granflow::simulation::{Simulation, StepSize};
 use oracle::{Case, published};
-use support::{alone, depths, line, plane, states, steps};
+use support::{alone, depths, grid, line, plane, states, steps};
 
 const PUBLISHED: [Variant; 5] = [VERFAHREN_1, VERFAHREN_2, VERFAHREN_3, VERFAHREN_4, VERFAHREN_5];
 
@@ -175,6 +175,34 @@ fn verfahren_5_gains_mass_the_others_keep_it() {
         let gained = after(verfahren, "silo", 10_000).totals().volume / before - 1.0;
         assert!((gained - expected).abs() <= within, "Verfahren {verfahren}: {gained}");
     }
+}
+
+#[test]
+fn a_tile_that_sleeps_holds_what_a_step_would_write() {
+    let sheet = grid([90, 60], [0.0; 2], 0.1, Boundary::Open);
+    let build = || {
+        // Where there is no mass a velocity leaves the sign of its momentum.
+        let start = |[i, j]: [usize; 2]| match i < 12 && j < 9 {
+            true => Flow { h: 1.0, q: [0.3, -0.2] },
+            false => Flow { h: 0.0, q: [-0.0, 0.0] },
+        };
+        // The others do not go on beside a cell without mass.
+        let scheme = VERFAHREN_1.with(Coulomb { mu: 0.1 });
+        Simulation::new(scheme, sheet, StepSize::Fixed(2e-4), |_| plane([0.5, -0.1], 0.9), start).unwrap()
+    };
+    let bits = |run: &Simulation<2, Kinetic>| {
+        run.collect(|cell| [cell.state.h, cell.state.q[0], cell.state.q[1]].map(f64::to_bits)).concat()
+    };
+    let (mut asleep, mut awake) = (build(), build());
+    alone(|| {
+        for step in 0..31 {
+            steps(&mut asleep, 1);
+            awake.wake_all();
+            steps(&mut awake, 1);
+            assert!(bits(&asleep) == bits(&awake), "step {step}");
+        }
+    });
+    assert!(asleep.updates() < awake.updates(), "nothing slept");
 }
 
 #[test]

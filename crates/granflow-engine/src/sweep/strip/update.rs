@@ -45,6 +45,12 @@ impl<const D: usize, const UNIFORM: bool, L: SimdVector, T: Scheme<D, L>> Strip<
             new = self.scheme.rk_combine(L::splat(self.rk_weight), &old, &new);
         }
         let (before, input) = (numbers(old), numbers(here.state));
+        // A zero keeps its sign where nothing changes, as in a tile that sleeps.
+        let components = numbers(new);
+        let new = T::State::load(
+            #[inline(always)]
+            |k| L::select(components[k].equals(input[k]), input[k], components[k]),
+        );
         new.store(
             #[inline(always)]
             |k, value| {

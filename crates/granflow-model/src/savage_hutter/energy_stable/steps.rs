@@ -92,8 +92,7 @@ where
         _corners: &[[(); 2]; 2],
         _dt: R,
     ) -> Flow<D, R> {
-        let old = stencil.at([0; D]).state;
-        let (zero, half, h) = (R::zero(), R::splat(0.5), old.h);
+        let (zero, half, h) = (R::zero(), R::splat(0.5), stencil.at([0; D]).state.h);
         let gone = total::<D, R>(per_axis!(axis => faces[axis].hi.mass - faces[axis].lo.mass));
         let energy = total::<D, R>(per_axis!(axis => faces[axis].hi.energy[0] - faces[axis].lo.energy[1]));
         let q: [R; D] = per_axis!(k => {
@@ -114,12 +113,7 @@ where
         if R::any(over) {
             keep = R::select(over, (most / R::select(over, square, R::splat(1.0))).sqrt(), keep);
         }
-        let q = per_axis!(k => {
-            let new = R::select(film, zero, q[k] * keep);
-            // A zero keeps its sign, as in a cell that sleeps.
-            R::select(new.equals(old.q[k]), old.q[k], new)
-        });
-        Flow { h: left, q }
+        Flow { h: left, q: per_axis!(k => R::select(film, zero, q[k] * keep)) }
     }
 
     fn mirror(&self, axis: usize, state: &Flow<D, R>) -> Flow<D, R> {
