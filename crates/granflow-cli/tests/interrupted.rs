@@ -89,7 +89,7 @@ fn a_second_signal_ends_at_once() {
     let begun = Instant::now();
     let output = shell(folder.path(), line);
     assert_eq!(said(&output).trim(), "130", "{}", told(&output));
-    assert!(begun.elapsed() < Duration::from_secs(30), "all rows take minutes");
+    assert!(begun.elapsed() < Duration::from_secs(3));
 }
 
 #[test]

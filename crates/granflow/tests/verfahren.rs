@@ -15,7 +15,7 @@ use granflow::savage_hutter::kinetic::{
 use granflow::scheme::Boundary;
 use granflow::simulation::{Simulation, StepSize};
 use oracle::{Case, published};
-use support::{alone, depths, grid, line, plane, states, steps};
+use support::{alone, asleep_and_awake, depths, grid, line, plane, states, steps};
 
 const PUBLISHED: [Variant; 5] = [VERFAHREN_1, VERFAHREN_2, VERFAHREN_3, VERFAHREN_4, VERFAHREN_5];
 
@@ -190,18 +190,7 @@ fn a_tile_that_sleeps_holds_what_a_step_would_write() {
         let scheme = VERFAHREN_1.with(Coulomb { mu: 0.1 });
         Simulation::new(scheme, sheet, StepSize::Fixed(2e-4), |_| plane([0.5, -0.1], 0.9), start).unwrap()
     };
-    let bits = |run: &Simulation<2, Kinetic>| {
-        run.collect(|cell| [cell.state.h, cell.state.q[0], cell.state.q[1]].map(f64::to_bits)).concat()
-    };
-    let (mut asleep, mut awake) = (build(), build());
-    alone(|| {
-        for step in 0..31 {
-            steps(&mut asleep, 1);
-            awake.wake_all();
-            steps(&mut awake, 1);
-            assert!(bits(&asleep) == bits(&awake), "step {step}");
-        }
-    });
+    let [asleep, awake] = asleep_and_awake("verfahren_1", build, 31);
     assert!(asleep.updates() < awake.updates(), "nothing slept");
 }
 

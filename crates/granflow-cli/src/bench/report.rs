@@ -99,7 +99,7 @@ impl Report {
         }
         text += "bytes: read + written + fetched to be written over; of triad: those bytes as a share of its bandwidth\n\n";
         let names = ["Mcups", "+-", "ns", "bytes", "of triad", "of first", "speed-up", "busy"];
-        let _ = write!(text, "{:23} {:>13} {:>7}", "scheme", "cells", "threads");
+        text += &begun("scheme", "cells", "threads");
         for (name, width) in names.iter().zip(WIDTHS) {
             let _ = write!(text, " {name:>width$}");
         }
@@ -126,7 +126,7 @@ impl Report {
             ratio(alone),
             row.busy.map_or_else(String::new, |busy| format!("{:.0} %", 100.0 * busy)),
         ];
-        let mut line = format!("{:23} {:>13} {:>7}", row.scheme, row.grid(), row.threads);
+        let mut line = begun(row.scheme, &row.grid(), row.threads);
         for (column, width) in columns.iter().zip(WIDTHS) {
             let _ = write!(line, " {column:>width$}");
         }
@@ -169,20 +169,20 @@ impl Report {
         let cell = |number: Option<f64>, digits: usize| {
             number.map_or_else(|| format!(" {:>width$}", ""), |number| format!(" {number:>width$.digits$}"))
         };
-        let mut text = format!("\n{:45}", "beside");
+        let mut text = format!("\n{}", begun("beside", "", ""));
         names.iter().for_each(|name| text += &format!(" {name:>width$}"));
         let mut counts: Vec<usize> = self.yardsticks.iter().map(|yardstick| yardstick.threads).collect();
         counts.sort_unstable();
         counts.dedup();
         for threads in counts {
             for (when, word) in [(When::Before, "before"), (When::After, "after")] {
-                let _ = write!(text, "\n{:37} {threads:>7}", format!("Mcups, {word}"));
+                let _ = write!(text, "\n{}", begun(&format!("Mcups, {word}"), "", threads));
                 names.iter().for_each(|name| text += &cell(self.yardstick(name, threads, Some(when)), 1));
             }
         }
         text += "\nratios\n";
         for row in &self.rows {
-            let _ = write!(text, "{:23} {:>13} {:>7}", row.scheme, row.grid(), row.threads);
+            text += &begun(row.scheme, &row.grid(), row.threads);
             for name in &names {
                 text += &cell(self.yardstick(name, row.threads, None).map(|speed| row.mcups() / speed), 2);
             }
@@ -260,6 +260,11 @@ impl Report {
             "beside": self.yardsticks.iter().map(yardstick).collect::<Vec<_>>(),
         })
     }
+}
+
+/// The first three columns of a line.
+fn begun(scheme: &str, cells: &str, threads: impl std::fmt::Display) -> String {
+    format!("{scheme:23} {cells:>13} {threads:>7}")
 }
 
 /// Of the columns from Mcups on.

@@ -2,7 +2,7 @@
 
 use super::state::Simulation;
 use crate::parallel;
-use crate::tiles::{MAX_TILES, STRIP, TileBlock, TileStats, tile_size};
+use crate::tiles::{MAX_TILES, STRIP, TileBlock, tile_size};
 use granflow_model::scheme::{Boundary, Scheme};
 
 impl<const D: usize, S: Scheme<D, f64>> Simulation<D, S> {
@@ -21,7 +21,7 @@ impl<const D: usize, S: Scheme<D, f64>> Simulation<D, S> {
     /// thread, as long as there is enough for all of them. Costs nothing for tiles that sleep.
     pub(super) fn wake(&mut self) {
         for &number in &self.awake {
-            self.stats[number as usize].outflow = TileStats::default().outflow;
+            self.stats[number as usize].outflow = Default::default();
         }
         self.find_frontier();
         let across = self.across;

@@ -92,9 +92,14 @@ impl<L: SimdVector, P: Components<L>, const KEPT: usize> Rows<'_, L, P, KEPT> {
     /// How many numbers they have.
     const NUMBERS: usize = P::COUNT * room(KEPT);
 
+    /// The rows that begin at `place`, which moves behind them.
+    ///
     /// # Safety
-    /// The numbers behind `start` belong to the rows alone as long as they are used.
-    unsafe fn at(start: *mut f64) -> Self {
+    /// Their numbers belong to the rows alone as long as they are used.
+    unsafe fn cut(place: &mut *mut f64) -> Self {
+        let start = *place;
+        // SAFETY: as the caller promises.
+        *place = unsafe { start.add(Self::NUMBERS) };
         Rows { start, pitch: 0, mask: 0, owner: PhantomData, values: PhantomData }
     }
     /// The same rows, by value.
@@ -242,20 +247,16 @@ impl<'a, const D: usize, L: SimdVector, T: Scheme<D, L>> Scratch<'a, D, L, T> {
     /// # Safety
     /// The [`Scratch::NUMBERS`] numbers behind `start` are borrowed for 'a.
     unsafe fn at(start: *mut f64, in_strip: &'a mut [u16; STRIP]) -> Self {
+        let mut place = start;
         // SAFETY: those of one kind begin where those of the one before end.
         unsafe {
-            let face_states = start.add(Rows::<L, T::Forecast, 1>::NUMBERS);
-            let along_x = face_states.add(Rows::<L, T::FaceStates, 2>::NUMBERS);
-            let along_y = along_x.add(Rows::<L, T::Flux, 1>::NUMBERS);
-            let corners = along_y.add(Rows::<L, T::Flux, 2>::NUMBERS);
-            let updated = corners.add(Rows::<L, T::Corner, 2>::NUMBERS);
             Scratch {
-                forecasts: Rows::at(start),
-                face_states: Rows::at(face_states),
-                along_x: Rows::at(along_x),
-                along_y: Rows::at(along_y),
-                corners: Rows::at(corners),
-                updated: Rows::at(updated),
+                forecasts: Rows::cut(&mut place),
+                face_states: Rows::cut(&mut place),
+                along_x: Rows::cut(&mut place),
+                along_y: Rows::cut(&mut place),
+                corners: Rows::cut(&mut place),
+                updated: Rows::cut(&mut place),
                 in_strip,
             }
         }

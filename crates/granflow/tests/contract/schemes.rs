@@ -1,7 +1,8 @@
 //! What every scheme owes: consistency, symmetry, positivity, mass, and one result whatever computes it.
 
 use super::support::{
-    Dice, ORDERS, Order, Surface, Tried, alone, grid, lost, on_plane, plane, run, states, steps, terrain,
+    Dice, ORDERS, Order, Surface, Tried, alone, asleep_and_awake, bits, grid, lost, on_plane, plane, run,
+    states, steps, terrain,
 };
 use granflow::hadeler_kuttler::scheme::{ADAPTIVE, FIRST_ORDER, SECOND_ORDER};
 use granflow::hadeler_kuttler::table::Table;
@@ -610,14 +611,6 @@ fn spill(order: Order) -> super::support::Run<2, Chute<2, f64>> {
     })
 }
 
-fn bits<B: Bed<2, f64>>(run: &super::support::Run<2, B>) -> Vec<u64> {
-    let mut all: Vec<f64> = run.collect(|c| [c.state.h, c.state.q[0], c.state.q[1]]).concat();
-    let totals = run.totals();
-    all.extend([totals.volume, totals.film, totals.speed, totals.energy, run.time(), run.step() as f64]);
-    all.extend(run.out());
-    all.into_iter().map(f64::to_bits).collect()
-}
-
 /// Sets each part of one cell in turn to what is no number; the next step must find it, and before that nothing.
 fn finds_what_is_no_number<const D: usize, S: Kernel<D>>(
     name: &str,
@@ -700,15 +693,7 @@ fn one_two_and_three_threads_give_the_same_bits() {
 #[test]
 fn rectangles_of_tiles_change_nothing() {
     for order in ORDERS {
-        let (mut asleep, mut awake) = (spill(order), spill(order));
-        alone(|| {
-            for step in 0..60 {
-                steps(&mut asleep, 1);
-                awake.wake_all();
-                steps(&mut awake, 1);
-                assert!(bits(&asleep) == bits(&awake), "{order:?}, step {step}");
-            }
-        });
+        let [asleep, awake] = asleep_and_awake(&format!("{order:?}"), || spill(order), 60);
         assert!(asleep.updates() < awake.updates(), "nothing slept");
         assert!(asleep.out()[..4].iter().all(|out| *out > 0.0), "{:?}", asleep.out());
     }
@@ -717,17 +702,7 @@ fn rectangles_of_tiles_change_nothing() {
 #[test]
 fn sleeping_tiles_change_nothing() {
     for order in ORDERS {
-        let (mut asleep, mut awake) = (avalanche(order), avalanche(order));
-        alone(|| {
-            for part in 0..40 {
-                for _ in 0..20 {
-                    steps(&mut asleep, 1);
-                    awake.wake_all();
-                    steps(&mut awake, 1);
-                }
-                assert!(bits(&asleep) == bits(&awake), "{order:?}, part {part}");
-            }
-        });
+        let [asleep, awake] = asleep_and_awake(&format!("{order:?}"), || avalanche(order), 800);
         assert!(2 * asleep.updates() < awake.updates(), "{} of {}", asleep.updates(), awake.updates());
     }
 }

@@ -157,3 +157,30 @@ impl Dice {
         from + (to - from) * self.roll()
     }
 }
+
+/// Every number of the state of a flow, its totals and what left it, as bits.
+pub fn bits<S: Kernel<2, State = Flow<2, f64>>>(run: &Simulation<2, S>) -> Vec<u64> {
+    let mut all: Vec<f64> = run.collect(|c| [c.state.h, c.state.q[0], c.state.q[1]]).concat();
+    let totals = run.totals();
+    all.extend([totals.volume, totals.film, totals.speed, totals.energy, run.time(), run.step() as f64]);
+    all.extend(run.out());
+    all.into_iter().map(f64::to_bits).collect()
+}
+
+/// Two runs after `count` steps, one of them with all its tiles awake in each: no step may tell them apart.
+pub fn asleep_and_awake<S: Kernel<2, State = Flow<2, f64>>>(
+    name: &str,
+    build: impl Fn() -> Simulation<2, S>,
+    count: usize,
+) -> [Simulation<2, S>; 2] {
+    let (mut asleep, mut awake) = (build(), build());
+    alone(|| {
+        for step in 0..count {
+            steps(&mut asleep, 1);
+            awake.wake_all();
+            steps(&mut awake, 1);
+            assert!(bits(&asleep) == bits(&awake), "{name}, step {step}");
+        }
+    });
+    [asleep, awake]
+}
